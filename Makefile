@@ -1,0 +1,32 @@
+# Every target makes .venv when it is missing or stale. OUT is where the demo writes.
+PYTHON ?= python3
+OUT ?= demo
+BIN := .venv/bin
+
+.PHONY: demo test lint bench verify clean
+
+demo: .venv/installed
+	$(BIN)/cogmap demo --out $(OUT)
+
+test: .venv/installed
+	$(BIN)/python -m pytest
+
+lint: .venv/installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: .venv/installed
+	$(BIN)/python -m benchmarks
+
+verify: .venv/installed
+	$(BIN)/python -m pytest -m full -rA
+
+.venv/installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --editable '.[dev]'
+	touch $@
+
+clean:
+	rm -rf .venv

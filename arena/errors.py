@@ -1,0 +1,5 @@
+"""What `arena` raises when it is given something it cannot use."""
+
+
+class ArenaError(ValueError):
+    """Bad input: the message says what was given, what was expected and what to do."""
