@@ -6,7 +6,7 @@ import tomllib
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, NamedTuple, Self
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import pymunk
@@ -18,6 +18,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 from arena.errors import ArenaError
 from arena.materials import MATERIALS
 from arena.odour import OdourField
+from arena.settings import complaint
 
 Coordinate = Annotated[float, Field(allow_inf_nan=False, ge=-1e3, le=1e3)]
 Point = tuple[Coordinate, Coordinate]
@@ -52,7 +53,7 @@ class Wall(_Part):
     material: Material
 
     @model_validator(mode="after")
-    def _has_length(self) -> Self:
+    def _has_length(self) -> Wall:
         if np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]) < 1e-6:
             raise ValueError(f"a wall of zero length at {self.start}; give it two different ends")
         return self
@@ -104,11 +105,13 @@ class Surfaces(NamedTuple):
     end: Float[np.ndarray, "faces 2"]
     height: Float[np.ndarray, "faces"]
     material: Int[np.ndarray, "faces"]
-    """Index into the sorted names of `arena.materials.MATERIALS`."""
+    """Index into `materials`."""
     offset: Float[np.ndarray, "faces"]
     """Where along its material (m) the face starts: the faces of a box share one wrapping."""
     closed: Bool[np.ndarray, "faces"]
     """Whether the face bounds a solid, so that its back is never seen."""
+    materials: tuple[str, ...]
+    """The names of the materials in use, sorted."""
 
 
 class Arena(_Part):
@@ -148,7 +151,7 @@ class Arena(_Part):
     )
 
     @model_validator(mode="after")
-    def _sound(self) -> Self:
+    def _sound(self) -> Arena:
         for index, corners in enumerate(self.platform):
             if not shapely.Polygon(corners).is_valid:
                 raise ValueError(f"platform {index} crosses itself; list its corners in order")
@@ -163,28 +166,26 @@ class Arena(_Part):
         return self
 
     @classmethod
-    def create(cls, **fields: object) -> Self:
+    def create(cls, **fields: object) -> Arena:
         """Build an arena from Python values; like the constructor, but raises `ArenaError`."""
         try:
             return cls.model_validate(fields)
         except ValidationError as error:
-            first = error.errors()[0]
-            where = ".".join(str(part) for part in first["loc"]) or "the arena"
-            raise ArenaError(f"{where}: {first['msg'].removeprefix('Value error, ')}") from None
+            raise ArenaError(complaint(error)) from None
 
     @classmethod
-    def parse(cls, text: str) -> Self:
+    def parse(cls, text: str) -> Arena:
         """Read an arena from TOML text."""
         try:
             fields = tomllib.loads(text)
-        except (tomllib.TOMLDecodeError, RecursionError) as error:
+        except (ValueError, RecursionError) as error:
             raise ArenaError(f"this is not TOML: {error}") from None
         if not fields:
             raise ArenaError("the TOML is empty; an arena needs at least name, platform and walls")
         return cls.create(**fields)
 
     @classmethod
-    def load(cls, source: str | Path) -> Self:
+    def load(cls, source: str | Path) -> Arena:
         """Load an arena by the name of a room in the gallery or by the path of a TOML file."""
         path = Path(source)
         if path.suffix != ".toml":
@@ -228,7 +229,7 @@ class Arena(_Part):
 
     def free_space(self, radius: float) -> shapely.Geometry:
         """Where the centre of a disc of this radius (m) can be, as a shapely geometry."""
-        return self._walkable.buffer(-radius, join_style="mitre") - self._obstacles.buffer(radius)
+        return self._walkable.buffer(-radius) - self._obstacles.buffer(radius)
 
     def is_free(self, xy: Float[np.ndarray, "points 2"], radius: float) -> Bool[np.ndarray, "points"]:
         """Whether a disc of this radius (m) centred at each point (m) touches nothing."""
@@ -273,27 +274,22 @@ class Arena(_Part):
             space.add(pymunk.Segment(space.static_body, a, b, 0.0))
         return space
 
+    @cached_property
     def surfaces(self) -> Surfaces:
         """Every vertical face, for the eye."""
-        names = sorted(MATERIALS)
-        rows: list[tuple[np.ndarray, np.ndarray, float, int, float, bool]] = []
-        for wall in self.walls:
-            rows.append(
-                (np.array(wall.start), np.array(wall.end), wall.height, names.index(wall.material), 0, False)
-            )
-        for solid in self._solids:
-            offset = 0.0
-            for a, b in zip(solid.outline, np.roll(solid.outline, -1, axis=0), strict=True):
-                rows.append((a, b, solid.height, names.index(solid.material), offset, True))
-                offset += float(np.hypot(*(b - a)))
-        start, end, height, material, offsets, closed = zip(*rows, strict=True)
+        outlines = [(np.array([wall.start, wall.end]), wall, False) for wall in self.walls]
+        outlines += [(np.vstack([solid.outline, solid.outline[:1]]), solid, True) for solid in self._solids]
+        names = tuple(sorted({part.material for _, part, _ in outlines}))
+        faces = [len(corners) - 1 for corners, _, _ in outlines]
+        lengths = [np.hypot(*np.diff(corners, axis=0).T) for corners, _, _ in outlines]
         return Surfaces(
-            np.array(start),
-            np.array(end),
-            np.array(height, dtype=float),
-            np.array(material),
-            np.array(offsets, dtype=float),
-            np.array(closed),
+            start=np.concatenate([corners[:-1] for corners, _, _ in outlines]),
+            end=np.concatenate([corners[1:] for corners, _, _ in outlines]),
+            height=np.repeat([part.height for _, part, _ in outlines], faces),
+            material=np.repeat([names.index(part.material) for _, part, _ in outlines], faces),
+            offset=np.concatenate([np.cumsum(length) - length for length in lengths]),
+            closed=np.repeat([closed for _, _, closed in outlines], faces),
+            materials=names,
         )
 
     @property

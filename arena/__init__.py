@@ -1,0 +1,31 @@
+"""The world and the body in it: what an animal can see, smell and bump into."""
+
+from arena.arena import Arena, Box, Pillar, Source, Wall, gallery
+from arena.body import Body
+from arena.camera import Camera
+from arena.errors import ArenaError
+from arena.exploration import explore
+from arena.motions import Motion, Walk
+from arena.motions.brownian import Brownian
+from arena.nose import Nose
+from arena.odour import OdourField
+from arena.recording import Recording
+
+__all__ = [
+    "Arena",
+    "ArenaError",
+    "Body",
+    "Box",
+    "Brownian",
+    "Camera",
+    "Motion",
+    "Nose",
+    "OdourField",
+    "Pillar",
+    "Recording",
+    "Source",
+    "Walk",
+    "Wall",
+    "explore",
+    "gallery",
+]

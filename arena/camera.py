@@ -1,0 +1,137 @@
+"""The eye: an upright camera on the body, perspective or panoramic."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from jaxtyping import Float, UInt8
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from arena import raycast
+from arena.arena import Arena
+from arena.errors import ArenaError
+from arena.materials import weave
+
+Images = UInt8[np.ndarray, "views height width 3"]
+Poses = Float[np.ndarray, "views 3"]
+
+
+class Camera(BaseModel):
+    """An upright camera looking along the body's heading, horizon in the middle row.
+
+    A perspective camera projects onto a plane; its focal length is width / (2 tan(field_of_view / 2)) pixels. A panoramic
+    one projects onto a cylinder with square pixels, focal length width / 2π: its centre column looks straight ahead,
+    column 0 straight back over the left shoulder. Pixel centres lie at half integers.
+
+    Parameters
+    ----------
+    projection
+        "perspective" or "panoramic".
+    width, height
+        Pixels.
+    field_of_view
+        Horizontal, rad; 2π for a panoramic camera.
+    eye_height
+        Above the floor, m.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    projection: Literal["perspective", "panoramic"]
+    width: Annotated[int, Field(gt=0, le=8192)]
+    height: Annotated[int, Field(gt=0, le=8192)]
+    field_of_view: Annotated[float, Field(gt=0, le=2 * np.pi)]
+    eye_height: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 0.3
+
+    @classmethod
+    def perspective(
+        cls,
+        width: int = 320,
+        height: int = 240,
+        *,
+        field_of_view: float = np.pi / 2,
+        eye_height: float = 0.3,
+    ) -> Self:
+        """Make a pinhole camera; `field_of_view` (rad) below π."""
+        if not 0 < field_of_view < np.pi:
+            raise ArenaError(
+                f"field_of_view is {field_of_view} rad; a perspective camera needs one between 0 and π: "
+                "use Camera.panoramic to look all around"
+            )
+        return cls._create("perspective", width, height, field_of_view, eye_height)
+
+    @classmethod
+    def panoramic(cls, width: int = 360, height: int = 60, *, eye_height: float = 0.3) -> Self:
+        """Make a camera that sees all around."""
+        return cls._create("panoramic", width, height, 2 * np.pi, eye_height)
+
+    @classmethod
+    def _create(
+        cls, projection: str, width: int, height: int, field_of_view: float, eye_height: float
+    ) -> Self:
+        try:
+            return cls.model_validate(
+                {
+                    "projection": projection,
+                    "width": width,
+                    "height": height,
+                    "field_of_view": field_of_view,
+                    "eye_height": eye_height,
+                }
+            )
+        except ValidationError as error:
+            first = error.errors()[0]
+            raise ArenaError(
+                f"camera {first['loc'][0]} is {first['input']!r}; {first['msg'].lower()}"
+            ) from None
+
+    @property
+    def focal_length(self) -> float:
+        """Pixels per unit of tangent (perspective) or per radian (panoramic)."""
+        if self.projection == "panoramic":
+            return self.width / (2 * np.pi)
+        return self.width / (2 * np.tan(self.field_of_view / 2))
+
+    def render(self, arena: Arena, poses: Poses) -> Images:
+        """Paint what the camera sees from each pose (m, m, rad).
+
+        Each pixel is the mean of the texture over the area it covers; the same poses give the same bits whatever the
+        number of threads.
+
+        Raises
+        ------
+        ArenaError
+            For poses that are not finite.
+        """
+        faces = arena.surfaces
+        out = np.empty((len(poses), self.height, self.width, 3), np.uint8)
+        raycast.render(
+            _checked(poses),
+            faces.start,
+            faces.end,
+            (faces.height, faces.material, faces.offset, faces.closed),
+            tuple(weave(faces.materials)),
+            (np.array(arena.floor, np.float32), np.array(arena.ceiling, np.float32)),
+            self._lens,
+            out,
+        )
+        return out
+
+    def depth(self, arena: Arena, poses: Poses) -> Float[np.ndarray, "views width"]:
+        """Distance (m) along the middle ray of each column to the nearest face of any height, else infinity."""
+        faces = arena.surfaces
+        out = np.empty((len(poses), self.width))
+        raycast.depths(_checked(poses), faces.start, faces.end, self._lens, out)
+        return out
+
+    @property
+    def _lens(self) -> tuple[int, float, float, bool]:
+        return self.width, self.focal_length, self.eye_height, self.projection == "panoramic"
+
+
+def _checked(poses: Poses) -> Float[np.ndarray, "views 3"]:
+    if not np.isfinite(poses).all():
+        bad = int(np.flatnonzero(~np.isfinite(poses).all(axis=1))[0])
+        raise ArenaError(f"pose {bad} is {poses[bad]}; give finite x, y (m) and heading (rad)")
+    return np.ascontiguousarray(poses, dtype=np.float64)

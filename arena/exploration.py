@@ -1,0 +1,146 @@
+"""Explore: a body walks through a room, looks and smells."""
+
+import json
+from pathlib import Path
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+import zarr
+from jaxtyping import Float, UInt8
+from tqdm import tqdm
+
+from arena import storage
+from arena.arena import Arena
+from arena.body import Body
+from arena.errors import ArenaError
+from arena.motions import Motion
+from arena.nose import Nose
+from arena.recording import Recording
+
+_BODY, _NOSE = Body(), Nose()
+
+
+@runtime_checkable
+class Eye(Protocol):
+    """What sees: an `arena.camera.Camera`, or anything that renders like it."""
+
+    @property
+    def height(self) -> int:
+        """Rows of an image."""
+        ...
+
+    @property
+    def width(self) -> int:
+        """Columns of an image."""
+        ...
+
+    def render(
+        self, arena: Arena, poses: Float[np.ndarray, "views 3"]
+    ) -> UInt8[np.ndarray, "views height width 3"]:
+        """Paint the views from poses; one view's pixels do not depend on the others."""
+        ...
+
+    def model_dump(self) -> dict[str, Any]:
+        """Give the parameters that, with the arena, determine every pixel."""
+        ...
+
+
+def explore(
+    arena: Arena,
+    motion: Motion,
+    camera: Eye,
+    *,
+    nose: Nose = _NOSE,
+    body: Body = _BODY,
+    views: int = 17_000,
+    seed: int = 0,
+    out: str | Path | None = None,
+    progress: bool = False,
+) -> Recording:
+    """Walk through the room, and record what is seen and smelt on the way.
+
+    Parameters
+    ----------
+    arena, motion, camera, nose, body
+        The room, how to move, and the animal.
+    views
+        How many to take.
+    seed
+        Varies the walk and the nose's noise, never the room.
+    out
+        Folder to stream to, 256 views at a time. The same call after a kill goes on where it stopped and ends
+        with the same bits; a recording that is whole is only opened. None keeps all in memory.
+    progress
+        Whether to show a bar on stderr.
+
+    Raises
+    ------
+    ArenaError
+        For a count or seed out of range, a body that does not fit, or an `out` that holds something else.
+    """
+    if views < 1 or seed < 0:
+        raise ArenaError(f"views is {views} and seed is {seed}; give at least one view and no negative seed")
+    attributes = {
+        "version": storage.VERSION,
+        "arena": arena.to_toml(),
+        "camera": _parameters(camera),
+        "motion": _parameters(motion),
+        "nose": _parameters(nose),
+        "body": _parameters(body),
+        "views": views,
+        "seed": seed,
+    }
+    path = None if out is None else Path(out)
+    begun = storage.load(path) if path is not None and path.exists() else None
+    if path is not None and begun is not None:
+        _check_same(path, begun.attributes, attributes)
+        if not begun.missing:
+            return Recording.open(path)
+    walk_rng, nose_rng = (np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(2))
+    walk = motion.walk(arena, body, views, walk_rng)
+    columns = {
+        "odours": nose.smell(arena.odours.concentration(walk.poses[:, :2]), walk.times, nose_rng),
+        "times": walk.times,
+        "poses": walk.poses,
+    }
+    shape = (views, camera.height, camera.width, 3)
+    missing = storage.shards(views) if begun is None else begun.missing
+    images: np.ndarray | zarr.Array[Any]
+    if path is None:
+        images = np.empty(shape, np.uint8)
+    else:
+        if begun is None:
+            with storage.new_folder(path) as folder:
+                storage.lay_out(folder, shape, columns, attributes)
+        elif not _equal(begun.columns, columns):
+            raise ArenaError(
+                f"{path} was begun by a program that walks or smells otherwise; remove it and start again"
+            )
+        images = storage.writable_views(path, missing)
+    with tqdm(total=views, unit="view", disable=not progress) as bar:
+        bar.update(views - sum(rows.stop - rows.start for rows in missing))
+        for rows in missing:
+            images[rows] = camera.render(arena, walk.poses[rows])
+            bar.update(rows.stop - rows.start)
+    if path is None:
+        return Recording(views=images, **columns, attributes=attributes)
+    return Recording.open(path)
+
+
+def _parameters(part: Eye | Motion | Body | Nose) -> dict[str, Any]:
+    """Describe a part as it will read back from JSON, where tuples are lists."""
+    described: dict[str, Any] = json.loads(json.dumps({"kind": type(part).__name__, **part.model_dump()}))
+    return described
+
+
+def _check_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:
+    differing = [key for key in wanted if found.get(key) != wanted[key]]
+    if differing:
+        raise ArenaError(
+            f"{path} holds another recording, of a different {' and '.join(differing)}; "
+            "choose another path or remove it first"
+        )
+
+
+def _equal(found: dict[str, np.ndarray], wanted: dict[str, np.ndarray]) -> bool:
+    return found.keys() == wanted.keys() and all(np.array_equal(found[name], wanted[name]) for name in wanted)

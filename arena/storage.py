@@ -1,0 +1,158 @@
+"""How a recording lies on disk: a zarr 3 group with the views in shards that are written whole."""
+
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import zarr
+from jaxtyping import Int, UInt8
+from zarr.codecs import BloscCodec
+
+from arena.errors import ArenaError
+
+VERSION = 1
+"""Of the layout."""
+SHARD = 256
+"""Views in a file."""
+
+_COLUMNS = ("odours", "times", "poses")
+# What zarr has been seen to raise on damaged metadata and chunks.
+_DAMAGE = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError)
+
+
+class Stored(NamedTuple):
+    """What a folder holds."""
+
+    views: zarr.Array[Any]
+    columns: dict[str, np.ndarray]
+    """`odours`, `times` and, unless they were taken away, `poses`."""
+    attributes: dict[str, Any]
+    missing: list[slice]
+    """Which views are not there or cannot be read, by shards."""
+
+
+@contextmanager
+def new_folder(path: Path) -> Iterator[Path]:
+    """Give a folder to fill, which takes the name `path` at the end; whatever fails or is killed leaves none.
+
+    Raises
+    ------
+    ArenaError
+        When there is something at `path`, or the folder cannot be written.
+    """
+    if path.exists() or path.is_symlink():
+        raise ArenaError(
+            f"{path} exists already and is left as it is; choose another path or remove it first"
+        )
+    folder = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    try:
+        folder.mkdir(parents=True)
+        yield folder
+        folder.rename(path)
+    except OSError as error:
+        raise ArenaError(f"cannot write {path}: {error.strerror or error}") from None
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def lay_out(
+    folder: Path, shape: tuple[int, ...], columns: Mapping[str, np.ndarray], attributes: Mapping[str, Any]
+) -> None:
+    """Write everything but the views."""
+    group = zarr.create_group(folder, zarr_format=3, attributes={**attributes, "version": VERSION})
+    for name, values in columns.items():
+        group.create_array(name, data=values)
+    group.create_array(
+        "views",
+        shape=shape,
+        dtype="uint8",
+        chunks=(1, *shape[1:]),
+        shards=(SHARD, *shape[1:]),
+        compressors=BloscCodec(cname="zstd", clevel=3, shuffle="noshuffle"),
+    )
+
+
+def writable_views(folder: Path, missing: list[slice]) -> zarr.Array[Any]:
+    """Open the views for writing the missing shards, after clearing away what a kill has left of them."""
+    for rows in missing:
+        _file(folder, rows).unlink(missing_ok=True)
+    for stray in (folder / "views").rglob("*.partial"):
+        stray.unlink()
+    # By default a shard of black images would not be written at all, and count as missing.
+    with zarr.config.set({"array.write_empty_chunks": True}):
+        return zarr.open_array(folder / "views", mode="r+")
+
+
+def load(path: Path) -> Stored:
+    """Open a recording that may still lack views.
+
+    Raises
+    ------
+    ArenaError
+        When it is missing, not a recording, of another version or damaged.
+    """
+    if not path.exists():
+        raise ArenaError(f"there is no recording at {path}; check the path or make one with `explore`")
+    try:
+        group = zarr.open_group(path, mode="r", zarr_format=3)
+        attributes = group.attrs.asdict()
+        version = attributes["version"]
+    except _DAMAGE:
+        raise ArenaError(
+            f"{path} is not a recording; give a folder that `explore` or `save` has written"
+        ) from None
+    if version != VERSION:
+        raise ArenaError(
+            f"{path} has the layout of version {version!r}, not {VERSION}; record it again with this program"
+        )
+    try:
+        arrays = dict(group.arrays())
+        columns = {name: np.asarray(arrays[name][:]) for name in _COLUMNS if name in arrays}
+        views = arrays["views"]
+        if views.shards is None or views.shards[0] != SHARD or not {"odours", "times"} <= columns.keys():
+            raise ValueError("an array is missing or cut up otherwise")
+        missing = [rows for rows in shards(views.shape[0]) if not _readable(path, views, rows)]
+    except _DAMAGE as error:
+        raise ArenaError(f"{path} is damaged ({_first_line(error)}); record it again") from None
+    return Stored(views, columns, attributes, missing)
+
+
+def shards(count: int) -> list[slice]:
+    """Cut this many views into shards."""
+    return [slice(first, min(first + SHARD, count)) for first in range(0, count, SHARD)]
+
+
+def read(
+    views: zarr.Array[Any], chosen: Int[np.ndarray, " chosen"]
+) -> UInt8[np.ndarray, "chosen height width 3"]:
+    """Read views by index, one slice a shard: zarr's own indexing by arrays takes 10 ms a view."""
+    out = np.empty((len(chosen), *views.shape[1:]), np.uint8)
+    shard = chosen // SHARD
+    for one in np.unique(shard):
+        here = np.flatnonzero(shard == one)
+        low, high = chosen[here].min(), chosen[here].max()
+        out[here] = np.asarray(views[low : high + 1])[chosen[here] - low]
+    return out
+
+
+def _file(folder: Path, rows: slice) -> Path:
+    return folder / "views" / "c" / str(rows.start // SHARD) / "0" / "0" / "0"
+
+
+def _readable(folder: Path, views: zarr.Array[Any], rows: slice) -> bool:
+    if not _file(folder, rows).is_file():
+        return False
+    try:
+        # The index with its checksum is the end of the file: what is cut short fails here.
+        views[rows.start]
+    except _DAMAGE:
+        return False
+    return True
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0]

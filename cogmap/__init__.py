@@ -1,0 +1,1 @@
+"""The cognitive map, its uses and its measures."""

@@ -1,0 +1,30 @@
+"""What a cognitive map says of views."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+
+@dataclass(frozen=True)
+class Activity:
+    """Activity of a map's neurons, one row per view, float32.
+
+    Attributes
+    ----------
+    place, heading
+        Rates of place cells and head-direction cells, Hz.
+    phase
+        Heading in the map's own frame, rad in (−π, π]: an unknown rotation, possibly a mirror, of the true one. NaN in the
+        dark and without a compass.
+    odour
+        Log concentration of each odorant, recalled from sight.
+    """
+
+    place: Float[np.ndarray, "views place_cells"]
+    heading: Float[np.ndarray, "views heading_cells"]
+    phase: Float[np.ndarray, "views"]
+    odour: Float[np.ndarray, "views odorants"]
+
+    def __len__(self) -> int:
+        return len(self.phase)

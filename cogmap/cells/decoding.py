@@ -1,0 +1,112 @@
+"""Reading place and heading out of a population, by decoders that were shown the truth of other views."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+from sklearn.neighbors import KNeighborsRegressor
+
+from cogmap.cells.checks import check_array
+from cogmap.errors import CogmapError
+
+NEIGHBOURS = 4
+
+
+def decode_positions(
+    train_odours: Float[np.ndarray, "train odorants"],
+    train_positions: Float[np.ndarray, "train 2"],
+    odours: Float[np.ndarray, "views odorants"],
+) -> Float[np.ndarray, "views 2"]:
+    """Position in m by 4-nearest-neighbour regression on log odour, weights 1/distance.
+
+    Parameters
+    ----------
+    train_odours
+        Log concentrations of the training views, (train, odorants).
+    train_positions
+        Where those views were taken in m, (train, 2).
+    odours
+        Log concentrations to decode, (views, odorants).
+
+    Raises
+    ------
+    CogmapError
+        For values that are not finite, shapes that do not fit, fewer than four training views.
+    """
+    check_array("train_odours", train_odours, (None, None))
+    check_array("train_positions", train_positions, (len(train_odours), 2))
+    check_array("odours", odours, (None, train_odours.shape[1]))
+    if len(train_odours) < NEIGHBOURS:
+        raise CogmapError(f"{len(train_odours)} training views; give at least {NEIGHBOURS}")
+    decoder = KNeighborsRegressor(n_neighbors=NEIGHBOURS, weights="distance", algorithm="kd_tree")
+    decoder.fit(train_odours.astype(float), train_positions.astype(float))
+    decoded: np.ndarray = decoder.predict(odours.astype(float))
+    return decoded
+
+
+def position_errors(
+    train_odours: Float[np.ndarray, "train odorants"],
+    train_positions: Float[np.ndarray, "train 2"],
+    odours: Float[np.ndarray, "views odorants"],
+    positions: Float[np.ndarray, "views 2"],
+) -> Float[np.ndarray, "views"]:
+    """Distance in m from each position to what `decode_positions` makes of its log odour.
+
+    The same measure serves the odour recalled from sight and the log of what the nose smelt.
+
+    Raises
+    ------
+    CogmapError
+        For values that are not finite, shapes that do not fit, fewer than four training views.
+    """
+    check_array("positions", positions, (len(odours), 2))
+    missed: np.ndarray = np.linalg.norm(
+        decode_positions(train_odours, train_positions, odours) - positions, axis=1
+    )
+    return missed
+
+
+class HeadingFrame(NamedTuple):
+    """How a learnt phase φ lies on the true heading: θ = φ + `rotation`, or `rotation` − φ in a mirror."""
+
+    rotation: float
+    """In rad, in (−π, π]."""
+    mirror: bool
+
+
+def fit_heading_frame(
+    phase: Float[np.ndarray, "train"], headings: Float[np.ndarray, "train"]
+) -> HeadingFrame:
+    """Find the rotation, and whether a mirror, that brings phases closest to headings, both in rad.
+
+    It maximises the resultant R = |mean exp i(θ ∓ φ)|; a tie is no mirror.
+
+    Raises
+    ------
+    CogmapError
+        For values that are not finite or shapes that do not fit.
+    """
+    check_array("phase", phase, (None,))
+    check_array("headings", headings, (len(phase),))
+    plain, mirrored = (np.mean(np.exp(1j * (headings.astype(float) - sign * phase))) for sign in (1, -1))
+    mirror = bool(abs(mirrored) > abs(plain))
+    return HeadingFrame(float(np.angle(mirrored if mirror else plain)), mirror)
+
+
+def heading_errors(
+    phase: Float[np.ndarray, "views"], headings: Float[np.ndarray, "views"], frame: HeadingFrame
+) -> Float[np.ndarray, "views"]:
+    """Signed error θ̂ − θ in rad, in (−π, π], of phases read in a frame.
+
+    Raises
+    ------
+    CogmapError
+        For values that are not finite or shapes that do not fit.
+    """
+    check_array("phase", phase, (None,))
+    check_array("headings", headings, (len(phase),))
+    sign = -1 if frame.mirror else 1
+    error: np.ndarray = np.angle(np.exp(1j * (sign * phase.astype(float) + frame.rotation - headings)))
+    return error

@@ -1,0 +1,243 @@
+"""The cognitive map: from views and odours to place cells and head-direction cells."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from jaxtyping import Float
+from numpy.typing import ArrayLike
+from torch import Tensor
+from tqdm import tqdm
+
+from cogmap.activity import Activity
+from cogmap.errors import CogmapError
+from cogmap.inputs import check_views, checked_count, log_odours
+from cogmap.layers import EPOCHS, Layers
+from cogmap.storage import read_map, write_map
+from cogmap.threads import one_thread
+from neurons.retina import Retina
+
+BATCH = 256
+"""Views learnt together; fixed, so that the same seed gives the same map."""
+
+
+class CognitiveMap:
+    """A map of a place, learnt from sight and smell alone.
+
+    It is given images and concentrations, in any order, and nothing else: no poses, no motor signals, no time. Afterwards
+    sight alone tells the recalled smell (hence place) and the heading, through place cells and head-direction cells.
+
+    Parameters
+    ----------
+    charts
+        Local charts of the view manifold; about a fifth as many as views.
+    components
+        Principal components of the view code.
+    place_cells, heading_cells
+        Sizes of the two populations.
+    epoch
+        Views per epoch when learning from a stream with `partial_fit`; `fit` sets it to the views it is given.
+    seed
+        Of the initial weights and the order of views; the same seed gives the same bits.
+
+    Attributes
+    ----------
+    trusted_
+        Whether the charts agree well enough for headings to be right.
+    reason_
+        Why not, in words; empty when trusted.
+    seconds_
+        Time spent per stage of development in this process, s.
+    view_shape_, odorants_
+        (height, width, 3) of the views and number of odorants it was fitted to.
+
+    Raises
+    ------
+    CogmapError
+        For views or odours of the wrong shape, type or range, and for counts below 1.
+    """
+
+    def __init__(
+        self,
+        charts: int = 3000,
+        components: int = 60,
+        *,
+        place_cells: int = 150,
+        heading_cells: int = 60,
+        epoch: int = 17_000,
+        seed: int = 0,
+    ) -> None:
+        self.charts = charts
+        self.components = components
+        self.place_cells = place_cells
+        self.heading_cells = heading_cells
+        self.epoch = epoch
+        self.seed = seed
+
+    def fit(self, views: Any, odours: ArrayLike, *, progress: bool = False) -> CognitiveMap:
+        """Learn a map from scratch, as epochs of `partial_fit` over the views in random order.
+
+        Parameters
+        ----------
+        views
+            (views, height, width, 3) uint8; an array, or anything lazy whose slices are arrays.
+        odours
+            (views, odorants) concentrations > 0.
+        progress
+            Whether to show a bar on stderr.
+        """
+        check_views(views)
+        smells = torch.from_numpy(log_odours(odours, views=len(views)))
+        if len(views) < checked_count("charts", self.charts):
+            raise CogmapError(
+                f"there are {len(views)} views for {self.charts} charts; "
+                "record more views or use fewer charts: about a fifth as many as views"
+            )
+        self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=len(views))
+        order = np.random.default_rng(self.seed)
+        with one_thread(), tqdm(total=sum(EPOCHS.values()), unit="epoch", disable=not progress) as bar:
+            started = time.perf_counter()
+            strips = torch.cat([strip for _, strip in self._strips(views)])
+            self.seconds_["retina"] = time.perf_counter() - started
+            for stage, epochs in EPOCHS.items():
+                bar.set_description(stage)
+                started = time.perf_counter()
+                for _ in range(epochs):
+                    for rows in torch.from_numpy(order.permutation(len(views))).split(BATCH):
+                        self._layers.learn(strips[rows], smells[rows])
+                    bar.update()
+                self.seconds_[stage] = time.perf_counter() - started
+        return self
+
+    def partial_fit(self, views: Any, odours: ArrayLike) -> CognitiveMap:
+        """Learn from the next views of a stream.
+
+        Time and memory per view do not depend on how many came before. See `cogmap.layers.Layers` for what is learnt when.
+        """
+        fresh = not hasattr(self, "_layers")
+        check_views(views, None if fresh else self.view_shape_)
+        smells = torch.from_numpy(
+            log_odours(odours, views=len(views), odorants=None if fresh else self.odorants_)
+        )
+        if fresh:
+            self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=checked_count("epoch", self.epoch))
+        with one_thread():
+            for rows, strip in self._strips(views):
+                self._layers.learn(strip, smells[rows])
+        return self
+
+    def perceive(self, views: Any = None, *, odours: ArrayLike | None = None) -> Activity:
+        """Let the map look at views, or smell odours in the dark, which tells place only.
+
+        Raises
+        ------
+        CogmapError
+            When the map is not grown yet, or when given both or neither.
+        """
+        self._check_grown()
+        if (views is None) == (odours is None):
+            raise CogmapError("give either views, or odours for a look in the dark; not both or neither")
+        with one_thread():
+            if odours is not None:
+                return self._smell(torch.from_numpy(log_odours(odours, odorants=self.odorants_)))
+            check_views(views, self.view_shape_)
+            if not self.trusted_:
+                warnings.warn(f"this map is not to be trusted: {self.reason_}", stacklevel=2)
+            parts = [self._look(strip) for _, strip in self._strips(views)]
+        place, heading, phase, odour = (torch.cat(part).numpy() for part in zip(*parts, strict=True))
+        return Activity(place, heading, phase, odour)
+
+    @property
+    def trusted_(self) -> bool:
+        return not self.reason_
+
+    @property
+    def reason_(self) -> str:
+        self._check_grown()
+        return self._layers.complain()
+
+    def save(self, path: str | Path) -> None:
+        """Write the map to a new folder: `weights.safetensors` and `map.json`.
+
+        Raises
+        ------
+        CogmapError
+            When something is at the path already, or it cannot be written.
+        """
+        self._check_grown()
+        settings = {
+            "charts": self.charts,
+            "components": self.components,
+            "place_cells": self.place_cells,
+            "heading_cells": self.heading_cells,
+            "epoch": self.epoch,
+            "seed": self.seed,
+        }
+        learnt = {"view_shape": self.view_shape_, "odorants": self.odorants_, "epoch": self._layers.epoch}
+        write_map(Path(path), self._layers.state_dict(), settings, learnt)
+
+    @classmethod
+    def load(cls, path: str | Path) -> CognitiveMap:
+        """Read a map that `save` wrote; it perceives the same bits.
+
+        Raises
+        ------
+        CogmapError
+            When it is missing, damaged or of another version.
+        """
+        weights, settings, learnt = read_map(Path(path))
+        try:
+            loaded = cls(**settings)
+            loaded._begin(tuple(learnt["view_shape"]), learnt["odorants"], epoch=learnt["epoch"])
+            loaded._layers.load_state_dict(weights)
+        except (KeyError, TypeError, RuntimeError) as error:
+            raise CogmapError(f"{path} does not hold a whole map: {error}") from None
+        return loaded
+
+    def _begin(self, view_shape: tuple[int, ...], odorants: int, *, epoch: int) -> None:
+        self._retina = Retina()
+        self.view_shape_, self.odorants_ = view_shape, odorants
+        self.seconds_: dict[str, float] = {}
+        self._layers = Layers(
+            self._retina.features,
+            odorants,
+            charts=checked_count("charts", self.charts),
+            components=checked_count("components", self.components, 3),
+            place_cells=checked_count("place_cells", self.place_cells),
+            heading_cells=checked_count("heading_cells", self.heading_cells),
+            epoch=epoch,
+            generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
+        )
+
+    def _check_grown(self) -> None:
+        if not hasattr(self, "_layers"):
+            raise CogmapError("this map has learnt nothing yet; call fit or partial_fit first")
+
+    def _strips(self, views: Any) -> Iterator[tuple[slice, Float[Tensor, "views features"]]]:
+        """Pass views through the retina in fixed batches."""
+        for start in range(0, len(views), BATCH):
+            rows = slice(start, start + BATCH)
+            yield rows, self._retina(torch.from_numpy(np.ascontiguousarray(views[rows])))
+
+    def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """Rates of both populations, heading and recalled odour."""
+        layers = self._layers
+        codes = layers.code(strips)
+        excited = layers.recall.excite(layers.charts, codes)
+        phase, odour = layers.recall(layers.charts, codes, excited)
+        return layers.place.afferents(excited), layers.heading.afferents(excited), phase, odour
+
+    def _smell(self, odours: Float[Tensor, "views odorants"]) -> Activity:
+        blind = np.full(len(odours), np.nan, np.float32)
+        return Activity(
+            place=self._layers.place.tuning(odours).numpy(),
+            heading=np.repeat(blind[:, None], self.heading_cells, axis=1),
+            phase=blind,
+            odour=odours.numpy(),
+        )

@@ -1,0 +1,158 @@
+"""The layers in a row, and the order in which they mature."""
+
+from __future__ import annotations
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from neurons.atlas import Atlas
+from neurons.charts import Charts
+from neurons.errors import NeuronsError
+from neurons.heading_axis import heading_axes
+from neurons.heading_cells import HeadDirectionCells
+from neurons.oja import Sanger
+from neurons.olfaction import Olfaction
+from neurons.place_cells import PlaceCells
+from neurons.recall import Recall
+from neurons.synchronisation import synchronise
+
+EPOCHS = {"code": 4, "charts": 6, "olfaction": 1, "cells": 2, "afferents": 1}
+"""Stages of development, in order, and how many epochs of views each lasts."""
+STAGES = tuple(EPOCHS)
+WINNERS = (12, 4)
+"""Charts that learn from a view, at the beginning and at the end of their stage."""
+SMELLING = 16
+"""Charts that learn the smell of a view."""
+EIGENVALUE = 0.993
+"""Least agreement of the phases in an atlas that can be trusted."""
+
+
+class Layers(nn.Module):
+    """Sanger code, charts, olfaction, recall and the two populations, maturing one after the other.
+
+    Each layer learns during its own critical period, and those before it are then fixed: first the code, then the charts;
+    then each chart learns how smell changes across it; then the charts agree on a compass, the cells share out what is
+    recalled, and at last their afferents from sight are learnt. From the third stage on, all that is learnt are sums.
+
+    Parameters
+    ----------
+    features, odorants
+        Inputs.
+    charts, components, place_cells, heading_cells
+        Sizes.
+    epoch
+        Views in an epoch, the unit of the critical periods.
+    generator
+        Draws the initial weights.
+    """
+
+    age: Tensor
+    matured: Tensor
+    agreement: Tensor
+
+    def __init__(
+        self,
+        features: int,
+        odorants: int,
+        *,
+        charts: int,
+        components: int,
+        place_cells: int,
+        heading_cells: int,
+        epoch: int,
+        generator: torch.Generator,
+    ) -> None:
+        super().__init__()
+        self.epoch = epoch
+        self.code = Sanger(features, components, generator=generator)
+        self.charts = Charts(charts, components, generator=generator)
+        self.olfaction = Olfaction(charts, odorants)
+        self.recall = Recall(charts, components, odorants)
+        self.place = PlaceCells(place_cells, charts, odorants)
+        self.heading = HeadDirectionCells(heading_cells, charts, generator=generator)
+        self.register_buffer("age", torch.zeros((), dtype=torch.int64))
+        self.register_buffer("matured", torch.zeros((), dtype=torch.int64))
+        self.register_buffer("agreement", torch.full((2,), torch.nan))
+        self.complaint = ""
+
+    @property
+    def stage(self) -> str:
+        """The stage of development that the next view falls into; the last one never ends."""
+        end = 0
+        for stage in STAGES:
+            end += EPOCHS[stage] * self.epoch
+            if int(self.age) < end:
+                return stage
+        return STAGES[-1]
+
+    def learn(self, strips: Float[Tensor, "views features"], log_odours: Float[Tensor, "views odorants"]) -> None:
+        """Let the layer whose period it is learn from a batch."""
+        stage = self.stage
+        self._mature(stage)
+        self.age += len(strips)
+        if stage == "code":
+            self.code.partial_fit(strips)
+            return
+        codes = self.code(strips)
+        if stage == "charts":
+            self.charts.partial_fit(codes, winners=self._winners(), memory=float(self.epoch))
+        elif stage == "olfaction":
+            nearest = self.charts.excite(codes, SMELLING)
+            width = self.recall.spacing[nearest.chart]
+            weight = torch.exp(-0.5 * nearest.squared_distance / width**2)
+            coordinates = self.charts.coordinates(codes, nearest.chart)
+            self.olfaction.partial_fit(nearest.chart, weight, coordinates, log_odours)
+        else:
+            excited = self.recall.excite(self.charts, codes)
+            headings, odours = self.recall(self.charts, codes, excited)
+            if stage == "cells":
+                self.place.compete(odours, memory=float(self.epoch))
+                self.heading.compete(headings, memory=float(self.epoch))
+            else:
+                self.place.afferents.partial_fit(excited, self.place.tuning(odours))
+                self.heading.afferents.partial_fit(excited, self.heading.tuning(headings))
+
+    def complain(self) -> str:
+        """Say why this map cannot be trusted, or nothing when it can."""
+        if self.stage != STAGES[-1]:
+            return f"it is still in its {self.stage!r} stage; show it more views"
+        signs, phases = self.agreement.tolist()
+        if not phases >= EIGENVALUE:
+            return (
+                f"the phases of its charts agree only to {phases:.4f}, below {EIGENVALUE}: "
+                "the atlas is too coarse; use more charts"
+            )
+        if signs < 0.99: 
+            return f"the heading axes of its charts agree only to {signs:.3f}; use more charts or more odour sources"
+        return ""
+
+    def _winners(self) -> int:
+        """Charts that learn from the next view, falling geometrically over their stage."""
+        begun = EPOCHS["code"] * self.epoch
+        share = min(1.0, max(0.0, (int(self.age) - begun) / (EPOCHS["charts"] * self.epoch)))
+        first, last = WINNERS
+        return round(first * (last / first) ** share)
+
+    def _mature(self, stage: str) -> None:
+        """Fix what came before `stage`, once."""
+        while int(self.matured) < STAGES.index(stage):
+            self.matured += 1
+            entered = STAGES[int(self.matured)]
+            if entered == "olfaction":
+                self.charts.freeze()
+                self.recall.spacing = Atlas.of(self.charts.centres).spacing
+            elif entered == "cells":
+                self._orient()
+
+    def _orient(self) -> None:
+        atlas = Atlas.of(self.charts.centres)
+        intercepts, jacobians = self.olfaction.solve()
+        axes = heading_axes(self.charts.tangents, jacobians, atlas)
+        try:
+            compass = synchronise(self.charts.centres, axes, atlas)
+        except NeuronsError as error:
+            compass, self.complaint = None, str(error)
+        else:
+            self.agreement = torch.tensor([compass.sign_agreement, compass.eigenvalue])
+        self.recall.settle(atlas, compass, intercepts, jacobians)

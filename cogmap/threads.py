@@ -1,0 +1,19 @@
+"""Same arrays whatever the number of threads."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import torch
+from threadpoolctl import threadpool_limits
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Run torch and BLAS on one thread: sums are then always taken in the same order."""
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        with threadpool_limits(limits=1), torch.no_grad():
+            yield
+    finally:
+        torch.set_num_threads(threads)

@@ -1,0 +1,45 @@
+"""Afferent weights from charts to cells, learnt while the cells are instructed to fire."""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from neurons.recall import Excited
+
+
+class Afferents(nn.Module):
+    """Hebbian association of chart activity a_k with instructed rates r_i, kept as sums.
+
+    The weight is the mean rate while the chart was active, W_ki = Σ a_k r_i / Σ a_k, the fixed point of the presynaptically
+    gated rule ΔW_ki = η a_k (r_i − W_ki). Afterwards a cell fires from sight alone, r_i = Σ_k a_k W_ki.
+
+    References
+    ----------
+    Grossberg (1976), Adaptive pattern classification and universal recoding I. Biological Cybernetics 23 (outstar rule).
+    """
+
+    association: Tensor
+    activity: Tensor
+
+    def __init__(self, charts: int, cells: int) -> None:
+        super().__init__()
+        self.register_buffer("association", torch.zeros(charts, cells))
+        self.register_buffer("activity", torch.zeros(charts))
+
+    @property
+    def weights(self) -> Float[Tensor, "charts cells"]:
+        """W in Hz; zero for charts that were never active."""
+        return self.association / self.activity.clamp(min=1e-12)[:, None]
+
+    def partial_fit(self, excited: Excited, rates: Float[Tensor, "views cells"]) -> None:
+        """Associate a batch of views with the rates (Hz) that an instructor demands."""
+        chart, weight = excited
+        self.activity.index_add_(0, chart.flatten(), weight.flatten())
+        pairs = (weight[:, :, None] * rates[:, None]).flatten(0, 1)
+        self.association.index_add_(0, chart.flatten(), pairs)
+
+    def forward(self, excited: Excited) -> Float[Tensor, "views cells"]:
+        """Rates in Hz from chart activity alone."""
+        chart, weight = excited
+        norm = self.activity.clamp(min=1e-12)[chart]
+        return torch.einsum("nw,nwc->nc", weight / norm, self.association[chart])

@@ -1,0 +1,120 @@
+"""Charts of the view manifold: competing centres, each with tangents learnt from what it wins."""
+
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from neurons.errors import NeuronsError
+
+DIMENSIONS = 3
+"""Degrees of freedom of a body on the floor, hence tangents per chart."""
+
+
+class Excitation(NamedTuple):
+    """Which charts each view excites, and how strongly."""
+
+    chart: Int[Tensor, "views winners"]
+    """Nearest first."""
+    squared_distance: Float[Tensor, "views winners"]
+
+
+class Charts(nn.Module):
+    """Competitive local PCA: K centres C_k tile the codes, each with tangents U_k along the manifold.
+
+    A view z excites its m nearest centres. The centre of rank r learns with h = exp(−2 r / m): C_k moves to the
+    running mean of h z, and U_k follows Sanger's rule on the residuals z − C_k, normalised by their variance as in
+    `neurons.oja.Sanger`. `freeze` makes the tangents orthonormal; after it nothing here changes any more.
+
+    Parameters
+    ----------
+    charts, components
+        K and the length of a code.
+    generator
+        Draws the initial tangents.
+
+    References
+    ----------
+    Martinetz, Berkovich & Schulten (1993), 'Neural-gas' network. IEEE Trans. Neural Networks 4 (competition by rank).
+    Kambhatla & Leen (1997), Dimension reduction by local principal component analysis. Neural Computation 9.
+    """
+
+    centres: Tensor
+    tangents: Tensor
+    mass: Tensor
+    variances: Tensor
+    placed: Tensor
+
+    def __init__(self, charts: int, components: int, *, generator: torch.Generator) -> None:
+        super().__init__()
+        draws = torch.randn(charts, components, DIMENSIONS, generator=generator)
+        self.register_buffer("centres", torch.zeros(charts, components))
+        self.register_buffer("tangents", torch.linalg.qr(draws).Q.mT.contiguous())
+        self.register_buffer("mass", torch.zeros(charts))
+        self.register_buffer("variances", torch.zeros(charts, DIMENSIONS))
+        self.register_buffer("placed", torch.zeros((), dtype=torch.int64))
+
+    def __len__(self) -> int:
+        return len(self.centres)
+
+    def excite(self, codes: Float[Tensor, "views components"], winners: int) -> Excitation:
+        """Find the nearest centres of each code, nearest first."""
+        squared = torch.addmm(self.centres.square().sum(dim=1), codes, self.centres.T, alpha=-2.0)
+        nearest = squared.topk(min(winners, len(self)), dim=1, largest=False)
+        # subtracting codes directly keeps the digits that |c|² − 2 z·c loses near a centre
+        exact = (codes[:, None] - self.centres[nearest.indices]).square().sum(dim=2)
+        return Excitation(nearest.indices, exact)
+
+    def coordinates(
+        self, codes: Float[Tensor, "views components"], chart: Int[Tensor, "views winners"]
+    ) -> Float[Tensor, "views winners 3"]:
+        """Chart coordinates U_k (z − C_k) of each code in the charts it excites."""
+        residual = codes[:, None] - self.centres[chart]
+        return torch.einsum("nwdc,nwc->nwd", self.tangents[chart], residual)
+
+    def partial_fit(
+        self, codes: Float[Tensor, "views components"], *, winners: int, memory: float
+    ) -> None:
+        """Let a batch of codes compete.
+
+        The first K codes ever seen become the centres. `winners` is m; `memory` is how many views a centre remembers
+        when it averages.
+        """
+        free = len(self) - int(self.placed)
+        if free:
+            fresh = codes[:free]
+            self.centres[int(self.placed) : int(self.placed) + len(fresh)] = fresh
+            self.placed += len(fresh)
+            codes = codes[free:]
+        if not len(codes):
+            return
+        if int(self.placed) < len(self):
+            raise NeuronsError("internal")
+        chart = self.excite(codes, winners).chart
+        h = torch.exp(-2.0 * torch.arange(chart.shape[1]) / chart.shape[1])
+        flat, weight = chart.flatten(), h.repeat(len(codes))
+        self.mass *= max(0.0, 1 - len(codes) / memory)
+        self.mass.index_add_(0, flat, weight)
+        rate = 1 / self.mass.clamp(min=1e-6)
+        residual = (codes[:, None] - self.centres[chart]).flatten(0, 1)
+        y = torch.einsum("ndc,nc->nd", self.tangents[flat], residual)
+        shift = torch.zeros_like(self.centres).index_add_(0, flat, weight[:, None] * residual)
+        hebb = torch.zeros_like(self.tangents).index_add_(
+            0, flat, (weight[:, None] * y)[:, :, None] * residual[:, None]
+        )
+        cross = torch.zeros(len(self), DIMENSIONS, DIMENSIONS).index_add_(
+            0, flat, weight[:, None, None] * y[:, :, None] * y[:, None]
+        )
+        fed = torch.zeros_like(self.mass).index_add_(0, flat, weight)
+        self.centres += rate[:, None] * shift
+        drive = self.variances[:, :, None] * self.tangents
+        decay = torch.tril(cross, diagonal=-1) @ self.tangents
+        drive += rate[:, None, None] * (hebb - decay - fed[:, None, None] * drive)
+        self.variances = drive.norm(dim=2)
+        length = self.variances[:, :, None]
+        self.tangents = torch.where(length > 0, drive / length, self.tangents)
+
+    def freeze(self) -> None:
+        """Make the tangents of each chart orthonormal."""
+        self.tangents = torch.linalg.qr(self.tangents.mT).Q.mT.contiguous()

@@ -1,0 +1,30 @@
+"""The direction in each chart along which smell does not change: turning on the spot."""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor
+
+from neurons.atlas import Atlas
+
+
+def heading_axes(
+    tangents: Float[Tensor, "charts 3 components"],
+    jacobians: Float[Tensor, "charts 3 odorants"],
+    atlas: Atlas,
+) -> Float[Tensor, "charts components"]:
+    """Unit vectors n_k, up to sign, along which the pooled odour gradients vanish.
+
+    Walking changes the smell and turning does not, so the heading axis is the null direction of the odour Jacobian:
+    with G_j = U_jᵀ J_j pooled over neighbours j of k, M_k = Σ (U_k G_j)(U_k G_j)ᵀ, the axis is the eigenvector of the
+    smallest eigenvalue; lines n nᵀ are then averaged over the neighbours.
+    """
+    gradients = tangents.mT @ jacobians
+    gradients = gradients / gradients.square().sum(dim=(1, 2), keepdim=True).sqrt().clamp(min=1e-12)
+    pooled = torch.einsum("kdc,kpco->kpdo", tangents, gradients[atlas.pool])
+    change = torch.einsum("kpdo,kpeo->kde", pooled, pooled)
+    smallest = torch.linalg.eigh(change.double()).eigenvectors[:, :, 0].float()
+    axes = torch.einsum("kd,kdc->kc", smallest, tangents)
+    lines = torch.einsum("kdc,kpc->kpd", tangents, axes[atlas.pool])
+    mean_line = torch.einsum("kpd,kpe->kde", lines, lines)
+    largest = torch.linalg.eigh(mean_line.double()).eigenvectors[:, :, -1].float()
+    return torch.einsum("kd,kdc->kc", largest, tangents)

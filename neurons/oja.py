@@ -1,0 +1,61 @@
+"""Principal components by Hebbian learning: Sanger's rule."""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+
+class Sanger(nn.Module):
+    """A layer of linear neurons that learns the leading principal components, in order.
+
+    Sanger's rule on batches, y = W (x − mean), with LT the strictly lower triangle:
+
+        ΔW = η Λ⁻¹ (⟨y xᵀ⟩ − LT⟨y yᵀ⟩ W − Λ W),   then each row of W is scaled to unit length.
+
+    Λ holds each neuron's output variance λ, learnt as the length of λw + η(…): the rate divided by it makes weak components
+    converge as fast as strong ones. η falls from a half as 1 / n, n in batches, after the first 40.
+
+    Parameters
+    ----------
+    features, components
+        Inputs and outputs.
+    generator
+        Draws the initial weights.
+
+    References
+    ----------
+    Sanger (1989), Optimal unsupervised learning in a single-layer linear feedforward neural network. Neural Networks 2.
+    Weng, Zhang & Hwang (2003), Candid covariance-free incremental principal component analysis. IEEE PAMI 25 (the rate).
+    """
+
+    mean: Tensor
+    weight: Tensor
+    variance: Tensor
+    steps: Tensor
+
+    def __init__(self, features: int, components: int, *, generator: torch.Generator) -> None:
+        super().__init__()
+        initial = torch.linalg.qr(torch.randn(features, components, generator=generator)).Q.T
+        self.register_buffer("mean", torch.zeros(features))
+        self.register_buffer("weight", initial.contiguous())
+        self.register_buffer("variance", torch.zeros(components))
+        self.register_buffer("steps", torch.zeros((), dtype=torch.int64))
+
+    def forward(self, x: Float[Tensor, "views features"]) -> Float[Tensor, "views components"]:
+        """Project onto the components learnt so far."""
+        return (x - self.mean) @ self.weight.T
+
+    def partial_fit(self, x: Float[Tensor, "views features"]) -> None:
+        """Take one Hebbian step on a batch."""
+        self.steps += 1
+        step = int(self.steps)
+        self.mean += (x.mean(dim=0) - self.mean) / step
+        centred = x - self.mean
+        y = centred @ self.weight.T
+        rate = 0.5 / (1 + step / 40)
+        hebb = y.T @ centred / len(x)
+        decay = torch.tril(y.T @ y / len(x), diagonal=-1) @ self.weight
+        drive = self.variance[:, None] * self.weight
+        drive += rate * (hebb - decay - drive)
+        self.variance = drive.norm(dim=1)
+        self.weight = drive / self.variance[:, None].clamp(min=1e-12)

@@ -1,0 +1,52 @@
+"""What each chart knows of smell: an affine map from chart coordinates to log odour."""
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from neurons.charts import DIMENSIONS
+
+RIDGE = 1e-3
+"""Prior on the slopes, as a fraction of the variance of the coordinates."""
+
+
+class Olfaction(nn.Module):
+    """Per chart, the regression of log odour on f = [1, U_k (z − C_k)], kept as sums.
+
+    Each view adds h f fᵀ and h f oᵀ to the charts it excites; `solve` gives the intercepts a_k and Jacobians J_k. Sums can be
+    added to by a stream and merged between maps grown from the same charts.
+    """
+
+    gram: Tensor
+    cross: Tensor
+
+    def __init__(self, charts: int, odorants: int) -> None:
+        super().__init__()
+        self.register_buffer("gram", torch.zeros(charts, DIMENSIONS + 1, DIMENSIONS + 1))
+        self.register_buffer("cross", torch.zeros(charts, DIMENSIONS + 1, odorants))
+
+    def partial_fit(
+        self,
+        chart: Int[Tensor, "views winners"],
+        weight: Float[Tensor, "views winners"],
+        coordinates: Float[Tensor, "views winners 3"],
+        log_odour: Float[Tensor, "views odorants"],
+    ) -> None:
+        """Add a batch of views to the charts they excite with the given weights."""
+        f = torch.cat([torch.ones_like(weight)[:, :, None], coordinates], dim=2)
+        weighted = weight[:, :, None] * f
+        gram = (weighted[:, :, :, None] * f[:, :, None]).flatten(0, 1)
+        cross = (weighted[:, :, :, None] * log_odour[:, None, None]).flatten(0, 1)
+        self.gram.index_add_(0, chart.flatten(), gram)
+        self.cross.index_add_(0, chart.flatten(), cross)
+
+    def solve(self) -> tuple[Float[Tensor, "charts odorants"], Float[Tensor, "charts 3 odorants"]]:
+        """Intercepts (log concentration at the centre) and Jacobians (per unit of chart coordinate)."""
+        gram = self.gram.double()
+        slopes = torch.diagonal(gram, dim1=1, dim2=2)[:, 1:].mean(dim=1)
+        prior = torch.zeros_like(gram)
+        for d in range(1, DIMENSIONS + 1):
+            prior[:, d, d] = RIDGE * slopes + 1e-9
+        prior[:, 0, 0] = 1e-9
+        solution = torch.linalg.solve(gram + prior, self.cross.double()).float()
+        return solution[:, 0], solution[:, 1:]

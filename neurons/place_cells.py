@@ -1,0 +1,77 @@
+"""Place cells: units that compete for recalled smells."""
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from neurons.afferents import Afferents
+
+PEAK = 20.0
+"""Rate of a cell at the middle of its field, Hz."""
+WINNERS = 6
+"""Units that learn from one smell; it sets how much neighbouring fields overlap."""
+FLATNESS = 0.05
+"""Smallest width of a tuning in any direction, as a fraction of its mean variance."""
+
+
+class PlaceCells(nn.Module):
+    """Competitive learning on log odour, then afferents from sight.
+
+    Each smell o is learnt by the nearest units: c_i is the running mean and Σ_i the running covariance of what unit i has
+    won, so that fields follow the geometry of the smells. Its tuning is
+
+        r_i(o) = 20 Hz · exp(−½ (o − c_i)ᵀ Σ_i⁻¹ (o − c_i)).
+
+    Parameters
+    ----------
+    cells, charts, odorants
+        Sizes.
+    """
+
+    centres: Tensor
+    covariances: Tensor
+    mass: Tensor
+    placed: Tensor
+
+    def __init__(self, cells: int, charts: int, odorants: int) -> None:
+        super().__init__()
+        self.register_buffer("centres", torch.zeros(cells, odorants))
+        self.register_buffer("covariances", torch.eye(odorants).repeat(cells, 1, 1))
+        self.register_buffer("mass", torch.zeros(cells))
+        self.register_buffer("placed", torch.zeros((), dtype=torch.int64))
+        self.afferents = Afferents(charts, cells)
+
+    def compete(self, log_odours: Float[Tensor, "views odorants"], *, memory: float) -> None:
+        """Learn from a batch of smells; the first smells become the centres, `memory` is in views."""
+        cells = len(self.centres)
+        placed = int(self.placed)
+        if placed < cells:
+            fresh = log_odours[: cells - placed]
+            self.centres[placed : placed + len(fresh)] = fresh
+            self.placed += len(fresh)
+            log_odours = log_odours[len(fresh) :]
+        if not len(log_odours):
+            return
+        distance = torch.cdist(log_odours, self.centres)
+        unit = distance.topk(min(WINNERS, cells), dim=1, largest=False).indices
+        deviation = log_odours[:, None] - self.centres[unit]
+        flat = unit.flatten()
+        self.mass *= max(0.0, 1 - len(log_odours) / memory)
+        self.mass.index_add_(0, flat, torch.ones(len(flat)))
+        rate = 1 / self.mass.clamp(min=1e-6)
+        spread = (deviation[..., None] * deviation[:, :, None]).flatten(0, 1)
+        fed = torch.zeros_like(self.mass).index_add_(0, flat, torch.ones(len(flat)))
+        drawn = torch.zeros_like(self.covariances).index_add_(0, flat, spread)
+        self.covariances += rate[:, None, None] * (drawn - fed[:, None, None] * self.covariances)
+        shift = torch.zeros_like(self.centres).index_add_(0, flat, deviation.flatten(0, 1))
+        self.centres += rate[:, None] * shift
+
+    def tuning(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
+        """Rates in Hz that smell alone demands."""
+        odorants = self.centres.shape[1]
+        mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1)
+        floor = FLATNESS * mean[:, None, None] * torch.eye(odorants)
+        precision = torch.linalg.inv(self.covariances + floor)
+        deviation = log_odours[:, None] - self.centres
+        squared = torch.einsum("nco,cop,ncp->nc", deviation, precision, deviation)
+        return PEAK * torch.exp(-0.5 * squared)

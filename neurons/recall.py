@@ -1,0 +1,80 @@
+"""What a frozen atlas says of a view: where it smells, and which way it faces."""
+
+from typing import NamedTuple, Self
+
+import torch
+from jaxtyping import Float, Int
+from torch import Tensor, nn
+
+from neurons.atlas import Atlas
+from neurons.charts import DIMENSIONS, Charts
+from neurons.synchronisation import Compass
+
+WINNERS = 8
+"""Charts that speak for a view."""
+BREADTH = 0.7
+"""Width of a chart's receptive field, in units of its spacing."""
+
+
+class Excited(NamedTuple):
+    """Normalised activity of the charts that a view excites."""
+
+    chart: Int[Tensor, "views winners"]
+    weight: Float[Tensor, "views winners"]
+    """Sums to one over the winners."""
+
+
+class Recall(nn.Module):
+    """Reads heading and odour off the charts that a view excites.
+
+    A view z excites its nearest charts with weights w ∝ exp(−|z − C_k|² / 2 h_k²), h_k a fraction of the chart's spacing.
+
+        θ̂ = arg Σ w exp i(φ_k + c n_k·(z − C_k)),        ô = Σ w (a_k + J_kᵀ U_k (z − C_k)).
+    """
+
+    spacing: Tensor
+    phases: Tensor
+    turning: Tensor
+    intercepts: Tensor
+    jacobians: Tensor
+
+    def __init__(self, charts: int, components: int, odorants: int) -> None:
+        super().__init__()
+        self.register_buffer("spacing", torch.ones(charts))
+        self.register_buffer("phases", torch.full((charts,), torch.nan))
+        self.register_buffer("turning", torch.full((charts, components), torch.nan))
+        self.register_buffer("intercepts", torch.full((charts, odorants), torch.nan))
+        self.register_buffer("jacobians", torch.full((charts, DIMENSIONS, odorants), torch.nan))
+
+    def settle(
+        self,
+        atlas: Atlas,
+        compass: Compass | None,
+        intercepts: Float[Tensor, "charts odorants"],
+        jacobians: Float[Tensor, "charts 3 odorants"],
+    ) -> Self:
+        """Take over what the charts have agreed on; without a compass headings stay NaN."""
+        self.spacing = atlas.spacing
+        self.intercepts, self.jacobians = intercepts, jacobians
+        if compass is not None:
+            self.phases, self.turning = compass.phases, compass.scale * compass.axes
+        return self
+
+    def excite(self, charts: Charts, codes: Float[Tensor, "views components"]) -> Excited:
+        """Activity of the nearest charts."""
+        nearest = charts.excite(codes, WINNERS)
+        width = BREADTH * self.spacing[nearest.chart]
+        weight = torch.softmax(-0.5 * nearest.squared_distance / width**2, dim=1)
+        return Excited(nearest.chart, weight)
+
+    def forward(
+        self, charts: Charts, codes: Float[Tensor, "views components"], excited: Excited
+    ) -> tuple[Float[Tensor, "views"], Float[Tensor, "views odorants"]]:
+        """Heading in the map's own frame (rad) and recalled log odour."""
+        chart, weight = excited
+        residual = codes[:, None] - charts.centres[chart]
+        angle = self.phases[chart] + torch.einsum("nwc,nwc->nw", self.turning[chart], residual)
+        heading = torch.atan2((weight * angle.sin()).sum(dim=1), (weight * angle.cos()).sum(dim=1))
+        slope = torch.einsum("nwd,nwdo->nwo", charts.coordinates(codes, chart), self.jacobians[chart])
+        odour = torch.einsum("nw,nwo->no", weight, self.intercepts[chart] + slope)
+        return heading, odour

@@ -1,0 +1,163 @@
+"""Signs, then phases, agreed over the atlas: lateral weights turn local axes into one compass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from jaxtyping import Complex, Float, Int
+from scipy.linalg import eigh
+from scipy.sparse import csc_array
+from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.sparse.linalg import eigsh
+from torch import Tensor
+
+from neurons.atlas import Atlas
+from neurons.errors import NeuronsError
+
+CELLS = 250
+"""Groups of charts, turning rigidly together, on which the scale of a turn is sought."""
+SCALES = np.geomspace(0.03, 1.5, 80)
+"""Scales tried, in rad per root-mean-square displacement along the axis."""
+
+
+@dataclass(frozen=True)
+class Compass:
+    """What the charts agree on.
+
+    Attributes
+    ----------
+    axes
+        Heading axes n_k, all turned the same way round.
+    scale
+        c, rad per unit of code along the axis.
+    phases
+        φ_k, heading of each chart's centre in the map's own frame, rad.
+    sign_agreement
+        Σ s_k s_l n_k·n_l / Σ |n_k·n_l| over the overlaps; 1 when the ring can be oriented.
+    eigenvalue
+        Top eigenvalue of the phase synchronisation; 1 when every overlap agrees.
+    """
+
+    axes: Float[Tensor, "charts components"]
+    scale: float
+    phases: Float[Tensor, "charts"]
+    sign_agreement: float
+    eigenvalue: float
+
+
+@dataclass(frozen=True)
+class _Overlaps:
+    """The atlas as a sparse Hermitian matrix: weight of edge (k, l), conjugate of (l, k), degree-normalised."""
+
+    edges: Int[np.ndarray, "edges 2"]
+    count: int
+
+    def top(self, weight: Complex[np.ndarray, "edges"]) -> tuple[float, Complex[np.ndarray, "charts"]]:
+        """Largest eigenvalue and its vector, by inverse iteration just above 1, the bound of the spectrum."""
+        k, l = self.edges.T
+        degree = np.bincount(self.edges.ravel(), minlength=self.count)
+        entry = weight / np.sqrt(degree[k] * degree[l])
+        index = (np.r_[k, l], np.r_[l, k])
+        matrix = csc_array((np.r_[entry, entry.conj()], index), shape=(self.count, self.count))
+        start = np.sqrt(degree).astype(complex)
+        value, vector = eigsh(matrix, k=1, sigma=1 + 1e-4, v0=start, tol=1e-8)
+        return float(value[0]), vector[:, 0]
+
+
+def synchronise(
+    centres: Float[Tensor, "charts components"],
+    axes: Float[Tensor, "charts components"],
+    atlas: Atlas,
+) -> Compass:
+    """Make local heading axes agree on a direction of turning, a scale and a phase.
+
+    Signs: Z₂ synchronisation, the top eigenvector of the degree-normalised n_k·n_l over the overlaps. Phases: with
+    ω_kl = ½ (C_l − C_k)·(n_k + n_l), the Hermitian exp(i c ω) has an eigenvalue near 1 when a walk around any loop of
+    charts turns by whole turns. The
+    eigenvalue λ(c) falls as c leaves 0, rises to a first interior maximum where the ring closes after exactly one turn,
+    and has others at the harmonics. The first is found on cells of charts, refined by a parabola in log c, and the
+    phases of the eigenvector at that scale are the headings of the charts.
+
+    Raises
+    ------
+    NeuronsError
+        When the atlas falls apart or closes no loop.
+
+    References
+    ----------
+    Singer (2011), Angular synchronization by eigenvectors and semidefinite programming. ACHA 30.
+    """
+    overlaps = _Overlaps(atlas.edges.numpy(), len(centres))
+    k, l = overlaps.edges.T
+    pieces = connected_components(csc_array((np.ones(len(k)), (k, l)), shape=(len(centres),) * 2), directed=False)[0]
+    if pieces > 1:
+        raise NeuronsError(f"the atlas falls into {pieces} pieces; use more charts or more views")
+    n, c = axes.double().numpy(), centres.double().numpy()
+    agreement = np.einsum("ec,ec->e", n[k], n[l])
+    _, vector = overlaps.top(agreement.astype(complex))
+    sign = np.where((vector * vector[np.argmax(np.abs(vector))].conj()).real < 0, -1.0, 1.0)
+    n = n * sign[:, None]
+    signed = sign[k] * sign[l] * agreement
+    omega = 0.5 * np.einsum("ec,ec->e", c[l] - c[k], n[k] + n[l])
+    scale, eigenvalue, phases = _close_ring(overlaps, omega)
+    return Compass(
+        axes=torch.from_numpy(n).float(),
+        scale=scale,
+        phases=torch.from_numpy(phases).float(),
+        sign_agreement=float(signed.sum() / np.abs(agreement).sum()),
+        eigenvalue=eigenvalue,
+    )
+
+
+def _close_ring(
+    overlaps: _Overlaps, omega: Float[np.ndarray, "edges"]
+) -> tuple[float, float, Float[np.ndarray, "charts"]]:
+    """Find the scale at which loops close after one turn; it, the eigenvalue there, and the phases."""
+    tried = SCALES / np.sqrt(np.mean(omega**2))
+    values = _coarse_eigenvalues(overlaps, omega, tried)
+    peaks = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    if not len(peaks):
+        raise NeuronsError("no loop of charts closes after a turn; use more charts or more views")
+    best = peaks[0]
+    near = slice(best - 1, best + 2)
+    bend, slope, _ = np.polyfit(np.log(tried[near]), values[near], 2)
+    scale = float(np.exp(-slope / (2 * bend)))
+    eigenvalue, vector = overlaps.top(np.exp(-1j * scale * omega))
+    return scale, eigenvalue, np.angle(vector)
+
+
+def _coarse_eigenvalues(
+    overlaps: _Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"]
+) -> Float[np.ndarray, "scales"]:
+    """Bound the top eigenvalue from below at many scales, by Rayleigh and Ritz on cells of charts that turn together.
+
+    Within a cell the phases follow c times the integral of ω from its root along shortest paths, which is close to what
+    synchronisation finds; so the bound is tight, and its matrix is small.
+    """
+    k, l = overlaps.edges.T
+    count = overlaps.count
+    graph = csc_array((np.ones(len(k)), (k, l)), shape=(count, count))
+    roots = np.linspace(0, count - 1, min(CELLS, count)).astype(int)
+    steps, before, source = dijkstra(
+        graph, directed=False, unweighted=True, indices=roots, min_only=True, return_predecessors=True
+    )
+    cell = np.searchsorted(roots, source)
+    step = csc_array((np.r_[omega, -omega], (np.r_[k, l], np.r_[l, k])), shape=(count, count)).tocsr()
+    potential = np.zeros(count)
+    for depth in range(1, int(steps.max()) + 1):
+        shell = np.flatnonzero(steps == depth)
+        potential[shell] = potential[before[shell]] + step[before[shell], shell]
+    across = potential[k] + omega - potential[l]
+    size = len(roots)
+    pair = cell[k] * size + cell[l]
+    degree = np.bincount(cell[overlaps.edges.ravel()], minlength=size)
+    norm = 1 / np.sqrt(np.outer(degree, degree))
+    values = []
+    for scale in scales:
+        turn = np.exp(-1j * scale * across)
+        entry = np.bincount(pair, turn.real, size**2) + 1j * np.bincount(pair, turn.imag, size**2)
+        half = entry.reshape(size, size) * norm
+        values.append(eigh(half + half.conj().T, eigvals_only=True, subset_by_index=(size - 1, size - 1))[0])
+    return np.array(values)

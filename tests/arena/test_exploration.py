@@ -1,0 +1,257 @@
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from arena.arena import Arena
+from arena.body import Body
+from arena.errors import ArenaError
+from arena.exploration import explore
+from arena.motions.brownian import Brownian
+from arena.nose import Nose
+from arena.recording import Recording
+
+VIEWS = 700
+
+
+class Toy:
+    """A camera whose pixels are a hash of the pose; it can be told to kill its process at some call."""
+
+    height, width = 4, 6
+
+    def __init__(self, gain: int = 1, kill_at: int | None = None) -> None:
+        self.gain = gain
+        self.kill_at = kill_at
+        self.calls: list[int] = []
+
+    def model_dump(self) -> dict[str, object]:
+        return {"gain": self.gain, "size": (self.height, self.width)}
+
+    def render(self, arena: Arena, poses: np.ndarray) -> np.ndarray:
+        if len(self.calls) == self.kill_at:
+            os.kill(os.getpid(), signal.SIGKILL)
+        assert isinstance(arena, Arena)
+        self.calls.append(len(poses))
+        bits = np.ascontiguousarray(poses).view(np.uint64).sum(axis=1) * np.uint64(self.gain)
+        pixels = np.arange(4 * 6 * 3, dtype=np.uint64).reshape(4, 6, 3)
+        return (bits[:, None, None, None] * (pixels + np.uint64(1)) >> np.uint64(20)).astype(np.uint8)
+
+
+def go(camera: Toy | None = None, **fields: object) -> Recording:
+    return explore(Arena.load("open_field"), Brownian(), camera or Toy(), **{"views": VIEWS, **fields})
+
+
+def assert_equal(a: Recording, b: Recording) -> None:
+    for name in ("odours", "times", "poses"):
+        np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
+    np.testing.assert_array_equal(a.views[:], b.views[:])
+    assert a.attributes == b.attributes
+
+
+def snapshot(path: Path) -> dict[str, bytes]:
+    return {str(file): file.read_bytes() for file in sorted(path.rglob("*")) if file.is_file()}
+
+
+def test_recording_holds_what_was_seen_and_smelt_on_the_way() -> None:
+    rec = go(nose=Nose(noise=0.0))
+    arena = Arena.load("open_field")
+    assert rec.views.shape == (VIEWS, 4, 6, 3)
+    np.testing.assert_array_equal(rec.views, Toy().render(arena, rec.poses))
+    wanted = arena.odours.concentration(rec.poses[:, :2])
+    np.testing.assert_array_equal(rec.odours, wanted.astype(np.float32))
+    assert (np.diff(rec.times) > 0).all()
+
+
+def test_attributes_tell_how_to_do_it_again() -> None:
+    rec = go(seed=3, nose=Nose(noise=0.2), body=Body(radius=0.2))
+    told = rec.attributes
+    assert Arena.parse(told["arena"]) == Arena.load("open_field")
+    assert told["camera"] == {"kind": "Toy", "gain": 1, "size": [4, 6]}
+    parts = [told[part] for part in ("motion", "nose", "body")]
+    motion, nose, body = (
+        kind(**{name: value for name, value in part.items() if name != "kind"})
+        for kind, part in zip((Brownian, Nose, Body), parts, strict=True)
+    )
+    again = explore(
+        Arena.parse(told["arena"]),
+        motion,
+        Toy(),
+        nose=nose,
+        body=body,
+        views=told["views"],
+        seed=told["seed"],
+    )
+    assert_equal(rec, again)
+
+
+def test_seed_varies_walk_and_noise() -> None:
+    first, other = go(), go(seed=1)
+    assert_equal(first, go())
+    assert not np.array_equal(first.poses, other.poses)
+    noise = [
+        np.log(rec.odours / go(seed=seed, nose=Nose(noise=0.0)).odours)
+        for seed, rec in enumerate((first, other))
+    ]
+    assert np.abs(np.mean(noise[0] * noise[1])) < 0.001
+    np.testing.assert_allclose(np.std(noise, axis=(1, 2)), 0.1, atol=0.01)
+
+
+def test_nose_and_camera_leave_the_walk_alone() -> None:
+    np.testing.assert_array_equal(go().poses, go(Toy(gain=3), nose=Nose(noise=0.5, fluctuation=0.3)).poses)
+
+
+def test_on_disk_it_is_the_same(tmp_path: Path) -> None:
+    camera = Toy()
+    rec = go(camera, out=tmp_path / "deep" / "rec.zarr")
+    assert camera.calls == [256, 256, 188]
+    assert_equal(rec, go())
+    assert_equal(Recording.open(tmp_path / "deep" / "rec.zarr"), go())
+
+
+def test_whole_recording_is_only_opened(tmp_path: Path) -> None:
+    go(out=tmp_path / "rec.zarr")
+    before, camera = snapshot(tmp_path), Toy()
+    assert_equal(go(camera, out=tmp_path / "rec.zarr"), go())
+    assert camera.calls == []
+    assert snapshot(tmp_path) == before
+
+
+def killed_at(path: Path, call: int) -> None:
+    script = f"""
+        import importlib.util, sys
+        spec = importlib.util.spec_from_file_location("toys", {str(Path(__file__))!r})
+        toys = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(toys)
+        toys.go(toys.Toy(kill_at={call}), out={str(path)!r})
+    """
+    root = Path(__file__).parents[2]
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(script)],
+        cwd=root,
+        check=False,
+        capture_output=True,
+        timeout=60,
+    )
+    assert done.returncode == -signal.SIGKILL, done.stderr.decode()
+
+
+def test_killed_exploration_goes_on_and_ends_with_the_same_bits(tmp_path: Path) -> None:
+    path, whole = tmp_path / "rec.zarr", tmp_path / "whole.zarr"
+    go(out=whole)
+    killed_at(path, 0)
+    with pytest.raises(ArenaError, match="0 of its 700 views"):
+        Recording.open(path)
+    killed_at(path, 1)
+    with pytest.raises(ArenaError, match="256 of its 700 views"):
+        Recording.open(path)
+    stray = path / "views" / "c" / "1" / "0" / "0" / "0.0123.partial"
+    stray.parent.mkdir(parents=True)
+    stray.write_bytes(b"cut short")
+    camera = Toy()
+    go(camera, out=path)
+    assert camera.calls == [256, 188]
+    relative = [
+        {name.removeprefix(str(root)): data for name, data in snapshot(root).items()}
+        for root in (path, whole)
+    ]
+    assert relative[0] == relative[1]
+
+
+def test_shard_cut_short_is_rendered_again(tmp_path: Path) -> None:
+    path = tmp_path / "rec.zarr"
+    go(out=path)
+    shard = path / "views" / "c" / "1" / "0" / "0" / "0"
+    shard.write_bytes(shard.read_bytes()[:1000])
+    camera = Toy()
+    assert_equal(go(camera, out=path), go())
+    assert camera.calls == [256]
+
+
+@pytest.mark.parametrize("state", ["whole", "half"])
+@pytest.mark.parametrize(
+    ("fields", "what"),
+    [
+        ({"seed": 1}, "seed"),
+        ({"views": 701}, "views"),
+        ({"nose": Nose(noise=0.2)}, "nose"),
+        ({"camera": Toy(gain=2)}, "camera"),
+    ],
+)
+def test_another_recording_is_not_touched(
+    tmp_path: Path, state: str, fields: dict[str, object], what: str
+) -> None:
+    path = tmp_path / "rec.zarr"
+    go(out=path)
+    if state == "half":
+        (path / "views" / "c" / "2" / "0" / "0" / "0").unlink()
+    before = snapshot(tmp_path)
+    with pytest.raises(ArenaError, match=f"another recording, of a different {what};"):
+        go(out=path, **fields)
+    assert snapshot(tmp_path) == before
+
+
+def test_half_written_by_a_program_that_walked_otherwise(tmp_path: Path) -> None:
+    path = tmp_path / "rec.zarr"
+    rec = go()
+    Recording(
+        views=rec.views, odours=rec.odours, times=rec.times + 1, poses=rec.poses, attributes=rec.attributes
+    ).save(path)
+    (path / "views" / "c" / "2" / "0" / "0" / "0").unlink()
+    before = snapshot(tmp_path)
+    with pytest.raises(ArenaError, match="otherwise"):
+        go(out=path)
+    assert snapshot(tmp_path) == before
+
+
+def test_junk_in_the_way_is_not_touched(tmp_path: Path) -> None:
+    (tmp_path / "thesis.txt").write_text("all of it")
+    for path in (tmp_path, tmp_path / "thesis.txt"):
+        with pytest.raises(ArenaError, match="not a recording"):
+            go(out=path)
+    assert snapshot(tmp_path) == {str(tmp_path / "thesis.txt"): b"all of it"}
+
+
+@pytest.mark.parametrize("fields", [{"views": 0}, {"views": -5}, {"seed": -1}])
+def test_counts_out_of_range_touch_nothing(tmp_path: Path, fields: dict[str, int]) -> None:
+    with pytest.raises(ArenaError, match="at least one view"):
+        go(out=tmp_path / "rec.zarr", **fields)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_start_inside_a_pillar_touches_nothing(tmp_path: Path) -> None:
+    with pytest.raises(ArenaError, match="start"):
+        explore(
+            Arena.load("pillar"), Brownian(start=(0.0, 0.0, 0.0)), Toy(), views=9, out=tmp_path / "rec.zarr"
+        )
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_in_memory_the_images_are_held_once() -> None:
+    class Large(Toy):
+        height, width = 100, 100
+
+        def render(self, arena: Arena, poses: np.ndarray) -> np.ndarray:
+            assert isinstance(arena, Arena)
+            return np.ones((len(poses), 100, 100, 3), np.uint8)
+
+    go(views=10)
+    tracemalloc.start()
+    rec = go(Large(), views=2000)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < rec.views.nbytes + 2.5 * 256 * 30_000
+
+
+def test_progress_is_shown_on_stderr_only(capsys: pytest.CaptureFixture[str]) -> None:
+    go(progress=True)
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert f"{VIEWS}/{VIEWS}" in shown.err
+    go()
+    assert capsys.readouterr().err == ""

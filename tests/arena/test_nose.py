@@ -1,0 +1,77 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import stats
+
+from arena.errors import ArenaError
+from arena.nose import Nose
+
+
+def smell(
+    nose: Nose, concentrations: np.ndarray, times: np.ndarray | None = None, seed: int = 0
+) -> np.ndarray:
+    times = np.arange(len(concentrations)) * 0.3 if times is None else times
+    return nose.smell(concentrations, times, np.random.default_rng(seed))
+
+
+def test_perfect_nose_smells_the_concentration() -> None:
+    concentrations = np.random.default_rng(1).uniform(0.01, 1, (50, 3))
+    smelt = smell(Nose(noise=0.0), concentrations)
+    assert smelt.dtype == np.float32
+    np.testing.assert_array_equal(smelt, concentrations.astype(np.float32))
+
+
+@pytest.mark.parametrize("noise", [0.05, 0.1, 0.8])
+def test_noise_is_lognormal_around_the_concentration(noise: float) -> None:
+    smelt = smell(Nose(noise=noise), np.full((20_000, 2), 0.4))
+    error = np.log(smelt.astype(float) / 0.4)
+    assert stats.kstest(error.ravel() / noise, "norm").pvalue > 0.01
+    assert abs(np.corrcoef(error[:-1, 0], error[1:, 0])[0, 1]) < 0.03
+    assert abs(np.corrcoef(error.T)[0, 1]) < 0.03
+
+
+def test_same_seed_same_smell() -> None:
+    nose, concentrations = Nose(fluctuation=0.3), np.full((100, 3), 0.2)
+    np.testing.assert_array_equal(smell(nose, concentrations), smell(nose, concentrations))
+    assert not np.array_equal(smell(nose, concentrations), smell(nose, concentrations, seed=1))
+
+
+def test_fluctuation_is_stationary_and_forgets_at_its_time_constant() -> None:
+    nose = Nose(noise=0.0, fluctuation=0.3, correlation_time=2.0)
+    times = np.array([0.0, 0.1, 0.5, 0.5, 3.0, 40.0])
+    drift = np.log(smell(nose, np.ones((len(times), 20_000)), times)).T
+    wanted = 0.09 * np.exp(-np.abs(times[:, None] - times) / 2.0)
+    np.testing.assert_allclose(np.cov(drift.T), wanted, atol=0.004)
+    np.testing.assert_allclose(drift.mean(axis=0), 0, atol=0.01)
+
+
+@pytest.mark.parametrize("name", ["noise", "fluctuation", "correlation_time"])
+@pytest.mark.parametrize("value", [-0.1, np.nan, np.inf, "much"])
+def test_bad_parameters_are_refused(name: str, value: float) -> None:
+    with pytest.raises(ArenaError, match=f"^Nose: {name} is {value!r}: Input should be "):
+        Nose(**{name: value})
+
+
+def test_unknown_parameter_is_refused() -> None:
+    with pytest.raises(ArenaError, match="nois"):
+        Nose(nois=0.1)
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
+def test_bad_concentrations_are_refused(value: float) -> None:
+    with pytest.raises(ArenaError, match="concentration"):
+        smell(Nose(), np.array([[0.1], [value]]))
+
+
+@pytest.mark.parametrize("times", [[0.0, 1.0, 0.5], [0.0, np.nan, 1.0]])
+def test_times_that_run_backwards_are_refused(times: list[float]) -> None:
+    with pytest.raises(ArenaError, match="times"):
+        smell(Nose(), np.ones((3, 1)), np.array(times))
+
+
+@given(st.floats(1e-300, 1e300), st.floats(0, 10))
+def test_smell_is_positive_and_finite(concentration: float, noise: float) -> None:
+    smelt = smell(Nose(noise=noise), np.full((20, 2), concentration))
+    assert np.isfinite(smelt).all()
+    assert (smelt > 0).all()

@@ -1,0 +1,39 @@
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+Samples = tuple[np.ndarray, np.ndarray]
+
+
+@pytest.fixture
+def wander() -> Callable[..., Samples]:
+    """Random positions in a 3.6×2.6 m room, with random headings."""
+
+    def draw(views: int = 5000, seed: int = 0) -> Samples:
+        rng = np.random.default_rng(seed)
+        return rng.uniform([-1.8, -1.3], [1.8, 1.3], (views, 2)), rng.uniform(-np.pi, np.pi, views)
+
+    return draw
+
+
+@pytest.fixture
+def bump() -> Callable[..., np.ndarray]:
+    """Gaussian tuning to place: 10 Hz at the centre."""
+
+    def rate(
+        positions: np.ndarray, centre: tuple[float, float] = (0.3, -0.2), width: float = 0.3
+    ) -> np.ndarray:
+        return 10 * np.exp(-np.sum((positions - centre) ** 2, axis=1) / (2 * width**2))
+
+    return rate
+
+
+@pytest.fixture
+def von_mises() -> Callable[..., np.ndarray]:
+    """Von Mises tuning to direction: 10 Hz at the preferred one."""
+
+    def rate(headings: np.ndarray, preferred: float | np.ndarray = 0.5, kappa: float = 4.0) -> np.ndarray:
+        return 10 * np.exp(kappa * (np.cos(headings - preferred) - 1))
+
+    return rate
