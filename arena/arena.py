@@ -145,9 +145,9 @@ class Arena(_Part):
     pillars: tuple[Pillar, ...] = ()
     sources: tuple[Source, ...] = ()
     decay_length: Length = 1.5
-    floor: tuple[Annotated[int, Field(ge=0, le=255)], ...] = Field((96, 88, 80), min_length=3, max_length=3)
+    floor: tuple[Annotated[int, Field(ge=0, le=255)], ...] = Field((104, 98, 92), min_length=3, max_length=3)
     ceiling: tuple[Annotated[int, Field(ge=0, le=255)], ...] = Field(
-        (206, 210, 214), min_length=3, max_length=3
+        (140, 142, 146), min_length=3, max_length=3
     )
 
     @model_validator(mode="after")

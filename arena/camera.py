@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+import math
+from typing import Annotated, Literal
 
 import numpy as np
 from jaxtyping import Float, UInt8
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
 from arena import raycast
 from arena.arena import Arena
 from arena.errors import ArenaError
 from arena.materials import weave
+from arena.settings import Settings
 
 Images = UInt8[np.ndarray, "views height width 3"]
 Poses = Float[np.ndarray, "views 3"]
 
 
-class Camera(BaseModel):
+class Camera(Settings):
     """An upright camera looking along the body's heading, horizon in the middle row.
 
-    A perspective camera projects onto a plane; its focal length is width / (2 tan(field_of_view / 2)) pixels. A panoramic
-    one projects onto a cylinder with square pixels, focal length width / 2π: its centre column looks straight ahead,
-    column 0 straight back over the left shoulder. Pixel centres lie at half integers.
+    A perspective camera projects onto a plane; its focal length is width / (2 tan(field_of_view / 2)) pixels.
+    A panoramic one projects onto a cylinder with square pixels, focal length width / 2π: its centre column
+    looks straight ahead, column 0 straight back over the left shoulder. Pixel centres lie at half integers.
 
     Parameters
     ----------
@@ -34,15 +36,29 @@ class Camera(BaseModel):
         Horizontal, rad; 2π for a panoramic camera.
     eye_height
         Above the floor, m.
-    """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    Raises
+    ------
+    ArenaError
+        For sizes that are not positive, or a field of view that the projection cannot have.
+    """
 
     projection: Literal["perspective", "panoramic"]
     width: Annotated[int, Field(gt=0, le=8192)]
     height: Annotated[int, Field(gt=0, le=8192)]
-    field_of_view: Annotated[float, Field(gt=0, le=2 * np.pi)]
-    eye_height: Annotated[float, Field(gt=0, allow_inf_nan=False)] = 0.3
+    field_of_view: Annotated[float, Field(gt=0)]
+    eye_height: Annotated[float, Field(gt=0, le=1e3)] = 0.3
+
+    def __init__(self, **fields: object) -> None:
+        super().__init__(**fields)
+        angle = self.field_of_view
+        if self.projection == "perspective" and angle >= np.pi:
+            raise ArenaError(
+                f"field_of_view is {angle:g} rad; a perspective camera needs one below π: "
+                "use Camera.panoramic to look all around"
+            )
+        if self.projection == "panoramic" and angle != 2 * np.pi:
+            raise ArenaError(f"field_of_view is {angle:g} rad; a panoramic camera looks all around, 2π")
 
     @classmethod
     def perspective(
@@ -52,82 +68,71 @@ class Camera(BaseModel):
         *,
         field_of_view: float = np.pi / 2,
         eye_height: float = 0.3,
-    ) -> Self:
+    ) -> Camera:
         """Make a pinhole camera; `field_of_view` (rad) below π."""
-        if not 0 < field_of_view < np.pi:
-            raise ArenaError(
-                f"field_of_view is {field_of_view} rad; a perspective camera needs one between 0 and π: "
-                "use Camera.panoramic to look all around"
-            )
-        return cls._create("perspective", width, height, field_of_view, eye_height)
+        return cls(
+            projection="perspective",
+            width=width,
+            height=height,
+            field_of_view=field_of_view,
+            eye_height=eye_height,
+        )
 
     @classmethod
-    def panoramic(cls, width: int = 360, height: int = 60, *, eye_height: float = 0.3) -> Self:
+    def panoramic(cls, width: int = 360, height: int = 60, *, eye_height: float = 0.3) -> Camera:
         """Make a camera that sees all around."""
-        return cls._create("panoramic", width, height, 2 * np.pi, eye_height)
-
-    @classmethod
-    def _create(
-        cls, projection: str, width: int, height: int, field_of_view: float, eye_height: float
-    ) -> Self:
-        try:
-            return cls.model_validate(
-                {
-                    "projection": projection,
-                    "width": width,
-                    "height": height,
-                    "field_of_view": field_of_view,
-                    "eye_height": eye_height,
-                }
-            )
-        except ValidationError as error:
-            first = error.errors()[0]
-            raise ArenaError(
-                f"camera {first['loc'][0]} is {first['input']!r}; {first['msg'].lower()}"
-            ) from None
+        return cls(
+            projection="panoramic",
+            width=width,
+            height=height,
+            field_of_view=2 * np.pi,
+            eye_height=eye_height,
+        )
 
     @property
     def focal_length(self) -> float:
         """Pixels per unit of tangent (perspective) or per radian (panoramic)."""
         if self.projection == "panoramic":
             return self.width / (2 * np.pi)
-        return self.width / (2 * np.tan(self.field_of_view / 2))
+        return self.width / (2 * math.tan(self.field_of_view / 2))
 
     def render(self, arena: Arena, poses: Poses) -> Images:
         """Paint what the camera sees from each pose (m, m, rad).
 
-        Each pixel is the mean of the texture over the area it covers; the same poses give the same bits whatever the
-        number of threads.
+        Each pixel is the mean of the texture over the area it covers; the same poses give the same bits
+        whatever the number of threads.
 
         Raises
         ------
         ArenaError
             For poses that are not finite.
         """
-        faces = arena.surfaces
+        plain = np.array([arena.floor, arena.ceiling], np.float32)
+        paints = raycast.Paints(*weave(arena.surfaces.materials), *plain)
         out = np.empty((len(poses), self.height, self.width, 3), np.uint8)
-        raycast.render(
-            _checked(poses),
-            faces.start,
-            faces.end,
-            (faces.height, faces.material, faces.offset, faces.closed),
-            tuple(weave(faces.materials)),
-            (np.array(arena.floor, np.float32), np.array(arena.ceiling, np.float32)),
-            self._lens,
-            out,
-        )
+        raycast.render(_checked(poses), _faces(arena), paints, self._lens, out)
         return out
 
     def depth(self, arena: Arena, poses: Poses) -> Float[np.ndarray, "views width"]:
-        """Distance (m) along the middle ray of each column to the nearest face of any height, else infinity."""
-        faces = arena.surfaces
+        """Distance (m) along the middle ray of each column to the nearest face of any height, else infinity.
+
+        Raises
+        ------
+        ArenaError
+            For poses that are not finite.
+        """
         out = np.empty((len(poses), self.width))
-        raycast.depths(_checked(poses), faces.start, faces.end, self._lens, out)
+        raycast.depths(_checked(poses), _faces(arena), self._lens, out)
         return out
 
     @property
-    def _lens(self) -> tuple[int, float, float, bool]:
-        return self.width, self.focal_length, self.eye_height, self.projection == "panoramic"
+    def _lens(self) -> raycast.Lens:
+        return raycast.Lens(self.width, self.focal_length, self.eye_height, self.projection == "panoramic")
+
+
+def _faces(arena: Arena) -> raycast.Faces:
+    *faces, _ = arena.surfaces
+    return raycast.Faces(*faces)
 
 
 def _checked(poses: Poses) -> Float[np.ndarray, "views 3"]:

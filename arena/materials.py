@@ -1,8 +1,8 @@
 """What walls are made of: procedural textures, and the tables that let the eye average them exactly.
 
-A texture is a tile of `TILE` texels, 1 cm each, repeated along and up the wall. Each is made from its name alone, so a
-material looks the same in every room, run and seed. All vary on scales from a centimetre to a metre: an animal with
-blurred eyes needs the coarse ones, a feature detector the fine ones.
+A texture is a tile of `TILE` texels, 1 cm each, repeated along and up the wall. Each is made from its name
+alone, so a material looks the same in every room, run and seed. All vary on scales from a centimetre to a
+metre: an animal with blurred eyes needs the coarse ones, a feature detector the fine ones.
 """
 
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float, Int, UInt8
+from jaxtyping import Float, Float32, Int, UInt8
 
 TEXEL = 0.01
 """Side of a texel, m."""
@@ -19,19 +19,21 @@ TILE = (1024, 128)
 """Texels along the wall and up the wall before the texture repeats."""
 
 Texture = UInt8[np.ndarray, "along up 3"]
-_Tint = tuple[float, float, float]
+_Tint = tuple[int, int, int]
 
 
 class Weave(NamedTuple):
-    """The textures of a room as running sums along the wall, for exact averages over any stretch of it.
+    """The textures of a room as running sums along and up the wall, for exact averages over any part of it.
 
-    The mean of row v between u0 and u1 is `mean[v] + (sums[u1, v] - sums[u0, v]) / (u1 - u0)`; the rows have their mean
-    taken out, so the sums are periodic and stay small enough for float32.
+    The mean over rows v0 to v1 between u0 and u1 is (F(v1) - F(v0)) / (v1 - v0), where
+    F(v) = mean[v] + (sums[u1, v] - sums[u0, v]) / (u1 - u0). The mean of each row is taken out of `sums`,
+    which makes them periodic along the wall and small enough for float32.
     """
 
-    sums: Float[np.ndarray, "materials along_and_one up_times_3"]
-    mean: Float[np.ndarray, "materials up_times_3"]
-    lid: Float[np.ndarray, "materials 3"]
+    sums: Float32[np.ndarray, "materials along_and_one up_and_one_times_3"]
+    mean: Float32[np.ndarray, "materials up_and_one_times_3"]
+    """Running sums up the wall of the mean of each row."""
+    lid: Float32[np.ndarray, "materials 3"]
     """Colour of the top of a box."""
 
 
@@ -39,9 +41,11 @@ def _cloud(rng: np.random.Generator, along: float, up: float) -> Float[np.ndarra
     """Smooth periodic noise of unit variance with correlation lengths `along` and `up` (m)."""
     white = np.fft.rfft2(rng.standard_normal(TILE))
     kx, ky = np.fft.fftfreq(TILE[0], TEXEL)[:, None], np.fft.rfftfreq(TILE[1], TEXEL)[None]
-    field = np.fft.irfft2(white * np.exp(-2 * (np.pi * along * kx) ** 2 - 2 * (np.pi * up * ky) ** 2), TILE)
+    blur = np.exp(-2 * (np.pi * along * kx) ** 2 - 2 * (np.pi * up * ky) ** 2)
+    field: np.ndarray = np.fft.irfft2(white * blur, TILE)
     field -= field.mean()
-    return field / field.std()
+    field /= field.std()
+    return field
 
 
 def _strips(rng: np.random.Generator, count: int, narrow: float, wide: float) -> Int[np.ndarray, "count"]:
@@ -51,8 +55,9 @@ def _strips(rng: np.random.Generator, count: int, narrow: float, wide: float) ->
 
 
 def _palette(rng: np.random.Generator, colours: list[_Tint], count: int, spread: float) -> np.ndarray:
-    picked = np.array(colours)[rng.integers(len(colours), size=count)]
-    return picked * np.exp(spread * rng.standard_normal((count, 1)))
+    picked: np.ndarray = np.array(colours, float)[rng.integers(len(colours), size=count)]
+    picked *= np.exp(spread * rng.standard_normal((count, 1)))
+    return picked
 
 
 def _stained(
@@ -60,7 +65,8 @@ def _stained(
 ) -> np.ndarray:
     """Blend a coarse stain of correlation length `scale` (m) into a coloured tile."""
     amount = depth / (1 + np.exp(-2 * _cloud(rng, scale, scale)))
-    return colour + amount[..., None] * (np.array(stain) - colour)
+    stained: np.ndarray = colour + amount[..., None] * (np.array(stain) - colour)
+    return stained
 
 
 def _bricks(
@@ -99,31 +105,36 @@ def _tiles(rng: np.random.Generator) -> np.ndarray:
     return _stained(rng, tiles, (30, 74, 96), 0.6, 0.4)
 
 
-def _stone(rng: np.random.Generator, base: _Tint, tint: _Tint) -> np.ndarray:
+def _stone(rng: np.random.Generator, base: _Tint, tint: tuple[float, float, float]) -> np.ndarray:
     """Grey veins on several scales over a base colour, with clouds of a tint."""
     veins = _cloud(rng, 0.25, 0.2) + 0.6 * _cloud(rng, 0.06, 0.05) + 0.35 * _cloud(rng, 0.012, 0.012)
-    return np.array(base) + 34 * veins[..., None] + 22 * _cloud(rng, 0.4, 0.3)[..., None] * np.array(tint)
+    colour: np.ndarray = np.array(base) + 34 * veins[..., None]
+    colour += 22 * _cloud(rng, 0.4, 0.3)[..., None] * np.array(tint)
+    return colour
 
 
 def _granite(rng: np.random.Generator) -> np.ndarray:
-    return _stone(rng, (120, 118, 126), (1, -0.2, 0.8))
+    return _stone(rng, (120, 118, 126), (1.0, -0.2, 0.8))
 
 
 def _marble(rng: np.random.Generator) -> np.ndarray:
-    return _stone(rng, (168, 150, 120), (-0.4, 0.2, 1))
+    return _stone(rng, (168, 150, 120), (-0.4, 0.2, 1.0))
 
 
 def _oak(rng: np.random.Generator) -> np.ndarray:
     board = _strips(rng, TILE[1], 0.12, 0.2)
     grain = 1 + 0.14 * _cloud(rng, 0.3, 0.008) + 0.1 * _cloud(rng, 0.2, 0.15)
-    return _palette(rng, [(176, 128, 72), (150, 104, 58)], TILE[1], 0.12)[board][None] * grain[..., None]
+    boards = _palette(rng, [(176, 128, 72), (150, 104, 58)], TILE[1], 0.12)[board]
+    colour: np.ndarray = boards * grain[..., None]
+    return colour
 
 
 def _plaid(rng: np.random.Generator) -> np.ndarray:
     colours: list[_Tint] = [(178, 34, 46), (24, 54, 92), (220, 196, 120), (30, 92, 66)]
     warp = _palette(rng, colours, TILE[0], 0.1)[_strips(rng, TILE[0], 0.03, 0.14)]
     weft = _palette(rng, colours, TILE[1], 0.1)[_strips(rng, TILE[1], 0.03, 0.14)]
-    return 0.6 * warp[:, None] + 0.4 * weft[None]
+    colour: np.ndarray = 0.6 * warp[:, None] + 0.4 * weft[None]
+    return colour
 
 
 def _leather(rng: np.random.Generator) -> np.ndarray:
@@ -188,9 +199,9 @@ MATERIALS = MappingProxyType(
 
 @cache
 def texture(name: str) -> Texture:
-    """The tile of a material: (1024, 128, 3) uint8, first axis along the wall, second from the floor up."""
+    """Make the tile of a material, (1024, 128, 3) uint8: first along the wall, then from the floor up."""
     rng = np.random.default_rng(list(name.encode()))
-    tile = np.clip(np.rint(MATERIALS[name](rng)), 0, 255).astype(np.uint8)
+    tile: Texture = np.clip(np.rint(MATERIALS[name](rng)), 0, 255).astype(np.uint8)
     tile.flags.writeable = False
     return tile
 
@@ -198,9 +209,11 @@ def texture(name: str) -> Texture:
 @cache
 def weave(names: tuple[str, ...]) -> Weave:
     """Stack the running sums of the named materials for the ray caster."""
-    tiles = np.stack([texture(name).astype(np.float64).reshape(TILE[0], -1) for name in names])
+    tiles = np.stack([texture(name) for name in names]).astype(np.float64)
     mean = tiles.mean(axis=1)
-    sums = np.zeros((len(names), TILE[0] + 1, tiles.shape[2]))
-    np.cumsum(tiles - mean[:, None], axis=1, out=sums[:, 1:])
-    lid = 0.8 * mean.reshape(len(names), -1, 3).mean(axis=1)
-    return Weave(sums.astype(np.float32), mean.astype(np.float32), lid.astype(np.float32))
+    sums = np.zeros((len(names), TILE[0] + 1, TILE[1] + 1, 3))
+    sums[:, 1:, 1:] = (tiles - mean[:, None]).cumsum(axis=1).cumsum(axis=2)
+    risen = np.zeros((len(names), TILE[1] + 1, 3))
+    risen[:, 1:] = mean.cumsum(axis=1)
+    flat = sums.reshape(len(names), TILE[0] + 1, -1), risen.reshape(len(names), -1), 0.8 * mean.mean(axis=1)
+    return Weave(*(part.astype(np.float32) for part in flat))

@@ -153,14 +153,29 @@ class CognitiveMap:
         place, heading, phase, odour = (torch.cat(part).numpy() for part in zip(*parts, strict=True))
         return Activity(place, heading, phase, odour)
 
+    def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
+        """Give the principal components of views, the space that the charts tile: the view manifold, float32."""
+        self._check_grown()
+        check_views(views, self.view_shape_)
+        with one_thread():
+            return torch.cat([self._layers.code(strip) for _, strip in self._strips(views)]).numpy()
+
     @property
     def trusted_(self) -> bool:
+        """Whether the charts agree well enough for headings to be right."""
         return not self.reason_
 
     @property
     def reason_(self) -> str:
+        """Why this map is not trusted; empty when it is."""
         self._check_grown()
         return self._layers.complain()
+
+    @property
+    def phase_eigenvalue_(self) -> float:
+        """How well the charts agree on phase, 1 at best; NaN before they have tried."""
+        self._check_grown()
+        return float(self._layers.agreement[1])
 
     def save(self, path: str | Path) -> None:
         """Write the map to a new folder: `weights.safetensors` and `map.json`.
@@ -201,7 +216,7 @@ class CognitiveMap:
         return loaded
 
     def _begin(self, view_shape: tuple[int, ...], odorants: int, *, epoch: int) -> None:
-        self._retina = Retina()
+        self._retina = Retina(*view_shape[:2])
         self.view_shape_, self.odorants_ = view_shape, odorants
         self.seconds_: dict[str, float] = {}
         self._layers = Layers(

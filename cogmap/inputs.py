@@ -29,7 +29,9 @@ def check_views(views: object, shape: tuple[int, ...] | None = None) -> None:
         )
 
 
-def log_odours(odours: ArrayLike, *, views: int | None = None, odorants: int | None = None) -> Float32[np.ndarray, "views odorants"]:
+def log_odours(
+    odours: ArrayLike, *, views: int | None = None, odorants: int | None = None
+) -> Float32[np.ndarray, "views odorants"]:
     """Take the logarithm of concentrations, (views, odorants), all finite and > 0."""
     array = np.asarray(odours)
     if array.ndim != 2 or array.shape[1] < 1 or array.dtype.kind not in "fiu":

@@ -86,7 +86,9 @@ class Layers(nn.Module):
                 return stage
         return STAGES[-1]
 
-    def learn(self, strips: Float[Tensor, "views features"], log_odours: Float[Tensor, "views odorants"]) -> None:
+    def learn(
+        self, strips: Float[Tensor, "views features"], log_odours: Float[Tensor, "views odorants"]
+    ) -> None:
         """Let the layer whose period it is learn from a batch."""
         stage = self.stage
         self._mature(stage)
@@ -123,7 +125,7 @@ class Layers(nn.Module):
                 f"the phases of its charts agree only to {phases:.4f}, below {EIGENVALUE}: "
                 "the atlas is too coarse; use more charts"
             )
-        if signs < 0.99: 
+        if signs < 0.99:
             return f"the heading axes of its charts agree only to {signs:.3f}; use more charts or more odour sources"
         return ""
 

@@ -17,10 +17,14 @@ VERSION = 1
 _WEIGHTS, _SETTINGS = "weights.safetensors", "map.json"
 
 
-def write_map(path: Path, weights: Mapping[str, Tensor], settings: Mapping[str, Any], learnt: Mapping[str, Any]) -> None:
+def write_map(
+    path: Path, weights: Mapping[str, Tensor], settings: Mapping[str, Any], learnt: Mapping[str, Any]
+) -> None:
     """Fill a new folder under another name and give it the right one at the end."""
     if path.exists() or path.is_symlink():
-        raise CogmapError(f"{path} exists already and is left as it is; choose another path or remove it first")
+        raise CogmapError(
+            f"{path} exists already and is left as it is; choose another path or remove it first"
+        )
     folder = path.with_name(f".{path.name}.{os.getpid()}.partial")
     described = {"version": VERSION, "settings": dict(settings), "learnt": dict(learnt)}
     try:

@@ -16,6 +16,14 @@ def _circular_gaussian(columns: int, sigma: float) -> Float[Tensor, "columns col
     return (kernel / kernel.sum())[index].float()
 
 
+def _area_average(pixels: int, receptors: int) -> Float[Tensor, "receptors pixels"]:
+    """Matrix that averages pixels over equal stretches of the image; each row sums to one."""
+    edge = torch.linspace(0, pixels, receptors + 1, dtype=torch.float64)
+    pixel = torch.arange(pixels, dtype=torch.float64)
+    overlap = torch.minimum(edge[1:, None], pixel + 1) - torch.maximum(edge[:-1, None], pixel)
+    return (overlap.clamp(min=0) * receptors / pixels).float()
+
+
 class Retina(nn.Module):
     """Centre-surround receptive fields along azimuth with divisive contrast normalisation.
 
@@ -24,10 +32,12 @@ class Retina(nn.Module):
         G_acuity [ Y / (s + floor · ⟨s⟩) ],   s² = G_pool ⟨Y²⟩ over rows and colours,
 
     where G_σ blurs around the ring with a Gaussian of σ columns. The gain control makes turning and walking move the
-    output in orthogonal directions, whatever fills the view. Fixed, nothing is learnt here.
+    output in orthogonal directions, whatever fills the view. Fixed: nothing is learnt here.
 
     Parameters
     ----------
+    height, width
+        Pixels of a view.
     rows, columns
         Receptors; 90 columns are 4° each.
     acuity, surround, pool
@@ -35,56 +45,60 @@ class Retina(nn.Module):
     floor
         Fraction of the mean contrast added to the local one, so that an empty wall is not amplified to noise.
 
+    Raises
+    ------
+    NeuronsError
+        When a view has fewer pixels than the retina has receptors.
+
     References
     ----------
     Heeger (1992), Normalization of cell responses in cat striate cortex. Visual Neuroscience 9.
     """
 
+    average: Tensor
     centre_surround: Tensor
     pooling: Tensor
     blur: Tensor
 
     def __init__(
         self,
+        height: int,
+        width: int,
+        *,
         rows: int = 15,
         columns: int = 90,
-        *,
-        acuity: float = 2.0,
+        acuity: float = 3.0,
         surround: float = 10.0,
-        pool: float = 4.0,
+        pool: float = 2.0,
         floor: float = 0.1,
     ) -> None:
         super().__init__()
-        self.rows, self.columns, self.floor = rows, columns, floor
-        blur = _circular_gaussian(columns, acuity)
-        self.register_buffer("blur", blur, persistent=False)
-        self.register_buffer(
-            "centre_surround", blur - _circular_gaussian(columns, surround), persistent=False
-        )
-        self.register_buffer("pooling", _circular_gaussian(columns, pool), persistent=False)
-
-    @property
-    def features(self) -> int:
-        """Length of the output, rows × 3 × columns."""
-        return self.rows * 3 * self.columns
-
-    def forward(self, views: UInt8[Tensor, "views height width 3"]) -> Float[Tensor, "views features"]:
-        """Turn views into normalised strips.
-
-        Raises
-        ------
-        NeuronsError
-            When a view has fewer pixels than the retina has receptors.
-        """
-        height, width = views.shape[1:3]
-        if height < self.rows or width < self.columns:
+        if height < rows or width < columns:
             raise NeuronsError(
-                f"views are {height}×{width} pixels; the retina needs at least {self.rows}×{self.columns}: "
+                f"views are {height}×{width} pixels; the retina needs at least {rows}×{columns}: "
                 "record with a larger panoramic camera"
             )
-        image = views.permute(0, 3, 1, 2).float()
-        strip = nn.functional.adaptive_avg_pool2d(image, (self.rows, self.columns))
-        strip = strip.transpose(1, 2).reshape(len(views), self.rows * 3, self.columns) @ self.centre_surround
+        self.features = rows * 3 * columns
+        self.floor = floor
+        blur = _circular_gaussian(columns, acuity)
+        differences = blur - _circular_gaussian(columns, surround)
+        for name, matrix in {
+            "average": _area_average(height, rows),
+            "centre_surround": _area_average(width, columns).T @ differences,
+            "pooling": _circular_gaussian(columns, pool),
+            "blur": blur,
+        }.items():
+            self.register_buffer(name, matrix, persistent=False)
+
+    def forward(self, views: UInt8[Tensor, "views height width 3"]) -> Float[Tensor, "views features"]:
+        """Turn views into normalised strips, rows × colours × columns."""
+        # as floats, so many views fit the processor's cache
+        return torch.cat([self._strips(some) for some in views.split(16)])
+
+    def _strips(self, views: UInt8[Tensor, "some height width 3"]) -> Float[Tensor, "some features"]:
+        rows = self.average @ views.float().flatten(2)
+        colours = rows.unflatten(2, (-1, 3)).transpose(2, 3).flatten(1, 2)
+        strip = colours @ self.centre_surround
         contrast = (strip.square().mean(dim=1, keepdim=True) @ self.pooling).sqrt()
         gain = contrast + self.floor * contrast.mean(dim=2, keepdim=True) + 1e-6
         return (strip / gain @ self.blur).flatten(1)

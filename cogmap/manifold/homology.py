@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from cogmap.errors import CogmapError
 from cogmap.manifold import null
-from cogmap.manifold.neighbours import checked_cloud, neighbour_graph
+from cogmap.manifold.neighbours import checked_cloud
 from cogmap.manifold.rips import (
     Bars,
     DistancesFrom,
@@ -56,7 +56,7 @@ class Betti:
     metric: Metric
 
     @property
-    def ratios(self) -> tuple[Float[np.ndarray, "bars"], ...]:
+    def ratios(self) -> tuple[Float[np.ndarray, "_"], ...]:
         """π of every bar, in falling order."""
         return tuple(ratios(bars) for bars in self.bars)
 
@@ -213,7 +213,7 @@ def _metric_space(
         return lambda point: distances[point], len(distances)
     X = np.unique(checked_cloud(X), axis=0)
     _check_enough(len(X))
-    return geodesic(neighbour_graph(X, neighbours)) if metric == "geodesic" else euclidean(X), len(X)
+    return geodesic(X, neighbours) if metric == "geodesic" else euclidean(X), len(X)
 
 
 def _checked_distances(X: Num[np.ndarray, "points *features"]) -> Float[np.ndarray, "points points"]:

@@ -15,6 +15,9 @@ from cogmap.errors import CogmapError
 TINY = float(np.finfo(np.float64).tiny)
 """Length of an edge between equal points: adds nothing to a path, yet is an edge, where a zero is none."""
 
+DETOUR = 5.0
+"""How many times its length a shortcut counts: enough to go round it wherever there is a way round."""
+
 
 class Components(NamedTuple):
     """The connected pieces of a graph."""
@@ -64,6 +67,32 @@ def neighbour_graph(X: Num[np.ndarray, "points *features"], neighbours: int = 15
     values = np.concatenate([np.maximum(lengths.ravel(), TINY), np.full(len(repeats), TINY)])
     graph = sp.csr_array((values.astype(np.float64), (rows, columns)), shape=(len(X), len(X)))
     return sp.csr_array(graph.maximum(graph.T))
+
+
+def lengthen_shortcuts(graph: sp.csr_array, shared: int = 3) -> sp.csr_array:
+    """Make edges whose ends have fewer than `shared` neighbours in common `DETOUR` times as long.
+
+    Two steps on one sheet of a manifold share most of their surroundings; an edge that jumps from one sheet
+    to another shares hardly any, makes false loops and closes true ones. No edge is lost, for such an edge
+    may also be all that spans a thinly sampled place.
+
+    Parameters
+    ----------
+    graph
+        Symmetric lengths, as from `neighbour_graph`.
+    shared
+        A fifth of the neighbours of a point suits clouds from curves to solids; 0 changes nothing.
+
+    References
+    ----------
+    Jarvis & Patrick (1973), Clustering using a similarity measure based on shared near neighbors.
+    """
+    joined = graph.astype(bool).astype(np.int32)
+    # One more than the common neighbours, so that none at all is still an entry beside every edge.
+    common = sp.csr_array((joined @ joined).multiply(joined) + joined).sorted_indices()
+    longer = graph.sorted_indices()
+    longer.data[common.data <= shared] *= DETOUR
+    return longer
 
 
 def components(graph: sp.csr_array) -> Components:

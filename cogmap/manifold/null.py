@@ -18,7 +18,6 @@ from jaxtyping import Float
 from scipy.interpolate import RegularGridInterpolator
 from tqdm import tqdm
 
-from cogmap.manifold.neighbours import neighbour_graph
 from cogmap.manifold.rips import euclidean, farthest_points, geodesic, ratios, rips_bars
 
 Metric = Literal["geodesic", "euclidean"]
@@ -95,7 +94,7 @@ def largest_ratios(
     The largest finite π for each (dimension of homology, landmarks) in `sizes`; 1 where there is no bar.
     """
     X = rng.uniform(size=(points, cube))
-    seen = geodesic(neighbour_graph(X, neighbours)) if metric == "geodesic" else euclidean(X)
+    seen = geodesic(X, neighbours) if metric == "geodesic" else euclidean(X)
     spread = farthest_points(seen, max(count for _, count in sizes), start=0).distances
     found = []
     for dimension, count in sizes:

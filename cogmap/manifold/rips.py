@@ -6,14 +6,15 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import scipy.sparse as sp
 from gudhi.sklearn import RipsPersistence
 from jaxtyping import Float, Int
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
-Bars = Float[np.ndarray, "bars 2"]
-"""Births and deaths, in the unit of the distances."""
+from cogmap.manifold.neighbours import lengthen_shortcuts, neighbour_graph
+
+Bars = Float[np.ndarray, "_ 2"]
+"""Births and deaths, in the unit of the distances; each dimension has its own number of bars."""
 DistancesFrom = Callable[[int], Float[np.ndarray, "points"]]
 """A metric, given as the distances from one point to all of them."""
 
@@ -33,8 +34,9 @@ def euclidean(X: Float[np.ndarray, "points features"]) -> DistancesFrom:
     return lambda point: np.asarray(cdist(X[point : point + 1], X)[0])
 
 
-def geodesic(graph: sp.csr_array) -> DistancesFrom:
-    """Shortest paths along the edges of a symmetric graph; infinite between its pieces."""
+def geodesic(X: Float[np.ndarray, "points features"], neighbours: int) -> DistancesFrom:
+    """Shortest paths in the neighbour graph, shunning its shortcuts; infinite between its pieces."""
+    graph = lengthen_shortcuts(neighbour_graph(X, neighbours), neighbours // 5)
     return lambda point: np.asarray(dijkstra(graph, indices=[point])[0])
 
 
@@ -93,7 +95,7 @@ def rips_bars(distances: Float[np.ndarray, "points points"], dimensions: Sequenc
     return tuple(found[np.argsort(-ratios(found), kind="stable")] for found in bars)
 
 
-def ratios(bars: Bars) -> Float[np.ndarray, "bars"]:
+def ratios(bars: Bars) -> Float[np.ndarray, "_"]:
     """How much a bar stands out, free of scale: π = death / birth.
 
     Pieces are all born at zero, so theirs is the death over the median finite death of all pieces.

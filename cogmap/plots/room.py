@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from arena.arena import Arena
+from arena.arena import Arena, Box, Pillar
 from arena.materials import texture
 from cogmap.cells.checks import check_array
-from cogmap.plots.style import INK, SOFT, direction_colours, new_figure, tidy_legend, tidy_room
+from cogmap.plots.style import INK, SMALL, SOFT, direction_colours, new_figure, tidy_room
 
 GRID = 0.04
 """Spacing in m of the points where the odour is asked for."""
@@ -54,7 +54,7 @@ def plot_room(arena: Arena, poses: Float[np.ndarray, "views 3"] | None = None) -
         _draw_path(axes, poses)
     margin = 0.03 * max(x1 - x0, y1 - y0)
     axes.set(xlim=(x0 - margin, x1 + margin), ylim=(y0 - margin, y1 + margin))
-    figure.legend(loc="outside lower center", ncols=6, fontsize=8, labelcolor=INK, frameon=False)
+    figure.legend(loc="outside lower center", ncols=3, fontsize=SMALL, labelcolor=INK, frameon=False)
     return figure
 
 
@@ -67,7 +67,8 @@ def _draw_surfaces(axes: Axes, arena: Arena) -> None:
     platform = shapely.union_all([shapely.Polygon(corners) for corners in arena.platform])
     for index, ring in enumerate(shapely.get_parts(platform.boundary)):
         axes.plot(*ring.xy, "--", color=INK, linewidth=1, zorder=3, label="platform" if index == 0 else None)
-    for solid in (*arena.boxes, *arena.pillars):
+    solids: list[Box | Pillar] = [*arena.boxes, *arena.pillars]
+    for solid in solids:
         axes.add_patch(
             Polygon(solid.outline, facecolor=_colour(solid.material), edgecolor=INK, linewidth=0.8, zorder=4)
         )
@@ -83,23 +84,22 @@ def _draw_odours(axes: Axes, arena: Arena) -> None:
     x0, y0, x1, y1 = arena.bounds
     x, y = (np.linspace(a, b, 2 + int((b - a) / GRID)) for a, b in ((x0, x1), (y0, y1)))
     points = np.stack(np.meshgrid(x, y), axis=-1)
-    odours = arena.odours.concentration(points.reshape(-1, 2))
-    for solid in (*arena.boxes, *arena.pillars):
-        odours[shapely.contains_xy(shapely.Polygon(solid.outline), points.reshape(-1, 2))] = np.nan
-    highest = int(np.floor(np.log2(np.nanmax(odours))))
+    odours = arena.odours.concentration(points.reshape(-1, 2)).reshape(*points.shape[:2], -1)
+    highest = int(np.floor(np.log2(odours.max())))
     levels = 2.0 ** np.arange(highest - HALVINGS + 1, highest + 1)
     hues = direction_colours(2 * np.pi * np.arange(len(arena.sources)) / len(arena.sources))
     for index, (source, hue) in enumerate(zip(arena.sources, hues, strict=True)):
-        axes.contour(
-            x, y, odours[:, index].reshape(len(y), len(x)), levels, colors=[hue], linewidths=0.9, zorder=2
-        )
+        odour = odours[..., index]
+        reached = levels[(levels > odour.min()) & (levels < odour.max())]
+        if len(reached):
+            axes.contour(x, y, odour, reached, colors=[hue], linewidths=0.9, zorder=2)
         axes.plot(
             *source.position,
             "*",
             color=hue,
             markeredgecolor=INK,
             markeredgewidth=0.6,
-            markersize=13,
+            markersize=12,
             linestyle="none",
             zorder=6,
             label=f"odour source {index}",
@@ -108,8 +108,6 @@ def _draw_odours(axes: Axes, arena: Arena) -> None:
 
 def _draw_path(axes: Axes, poses: Float[np.ndarray, "views 3"]) -> None:
     x, y = poses[:, :2].T
-    axes.plot(
-        x, y, ".", color=SOFT, markersize=2.2, markeredgewidth=0, zorder=1, label=f"{len(poses):,} views"
-    )
+    axes.scatter(x, y, s=3.5, color=SOFT, alpha=0.7, linewidths=0, zorder=1, label=f"{len(poses):,} views")
     first = min(len(poses), FIRST_VIEWS)
     axes.plot(x[:first], y[:first], color=INK, linewidth=0.6, zorder=1.5, label=f"way of the first {first}")

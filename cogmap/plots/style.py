@@ -7,13 +7,13 @@ of matplotlib, and changes none of them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import cast
+from typing import Literal, cast
 
 import numpy as np
+import pandas as pd
 from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
@@ -38,10 +38,14 @@ def _hues(count: int) -> Float[np.ndarray, "count 3"]:
     B. Ottosson (2020), A perceptual color space for image processing.
     """
     angle = 2 * np.pi * np.arange(count) / count
-    lightness, chroma = 0.69, 0.124
+    lightness, chroma = 0.72, 0.12
     lab = np.stack([np.full(count, lightness), chroma * np.cos(angle), chroma * np.sin(angle)], axis=1)
     cones = lab @ np.array(
-        [[1, 1, 1], [0.3963377774, -0.1055613458, -0.0894841775], [0.2158037573, -0.0638541728, -1.2914855480]]
+        [
+            [1, 1, 1],
+            [0.3963377774, -0.1055613458, -0.0894841775],
+            [0.2158037573, -0.0638541728, -1.2914855480],
+        ]
     )
     linear = cones**3 @ np.array(
         [
@@ -59,8 +63,8 @@ CYCLIC = ListedColormap(cast("Sequence[tuple[float, float, float]]", _hues(360))
 """For angles: equally light all around, and its end is its beginning."""
 
 
-def direction_colours(angles: Float[np.ndarray, "angles"]) -> Float[np.ndarray, "angles 4"]:
-    """The cyclic colours of angles in rad, grey where NaN; −π and π are the same."""
+def direction_colours(angles: Float[np.ndarray, " angles"]) -> Float[np.ndarray, "angles 4"]:
+    """Give angles in rad their cyclic colours, grey where NaN; −π and π are the same."""
     turn = np.nan_to_num(angles / (2 * np.pi) + 0.5) % 1
     colours: np.ndarray = CYCLIC(turn)
     colours[np.isnan(angles)] = (0.6, 0.6, 0.6, 1.0)
@@ -68,7 +72,7 @@ def direction_colours(angles: Float[np.ndarray, "angles"]) -> Float[np.ndarray, 
 
 
 def direction_scale() -> ScalarMappable:
-    """What a colour bar of directions in degrees shows."""
+    """Make what a colour bar of directions in degrees shows."""
     return ScalarMappable(Normalize(-180, 180), CYCLIC)
 
 
@@ -89,24 +93,31 @@ def tidy(axes: Axes, *, x: str = "", y: str = "", title: str = "") -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
+def title_sheet(figure: Figure, drawn: str, passing: pd.Series) -> None:
+    """Head a sheet of cells: what is drawn, and how many of all cells pass."""
+    note = "" if passing.all() else " (red: does not)"
+    figure.suptitle(f"{drawn}; {passing.sum()} of {len(passing)} pass{note}", fontsize=SMALL, color=INK)
+
+
 def tidy_room(axes: Axes, *, title: str = "") -> None:
     """Make axes a plan of the room: metres, the same along x and y."""
     tidy(axes, x="x (m)", y="y (m)", title=title)
     axes.set_aspect("equal")
 
 
-def tidy_legend(axes: Axes, *, title: str = "", loc: str = "best") -> None:
+def tidy_legend(axes: Axes, *, title: str = "", loc: Literal["best", "lower right"] = "best") -> None:
     """Explain the labelled artists, in small type."""
     legend = axes.legend(title=title, loc=loc, fontsize=TINY, title_fontsize=TINY, labelcolor=INK)
     legend.get_title().set_color(INK)
     legend.get_frame().set(facecolor="white", edgecolor="none", alpha=0.85)
 
 
-def colour_bar(axes: Axes | Sequence[Axes], scale: ScalarMappable, label: str) -> Colorbar:
-    """Put a labelled colour bar to the right of axes."""
-    first = axes if isinstance(axes, Axes) else axes[0]
-    figure = cast("Figure", first.get_figure(root=True))
-    bar = figure.colorbar(scale, ax=axes, shrink=0.85, aspect=30, pad=0.02)
+def colour_bar(
+    axes: Axes, scale: ScalarMappable, label: str, *, extend: Literal["neither", "max", "both"] = "neither"
+) -> Colorbar:
+    """Put a labelled colour bar to the right of axes; it extends where colours hold all that is beyond."""
+    figure = cast("Figure", axes.get_figure(root=True))
+    bar = figure.colorbar(scale, ax=axes, shrink=0.85, aspect=30, pad=0.02, extend=extend)
     bar.set_label(label, fontsize=SMALL, color=INK)
     bar.ax.tick_params(labelsize=TINY, colors=INK, length=2.5, width=0.6)
     bar.outline.set_visible(False)

@@ -75,6 +75,14 @@ def test_wall_stops_what_comes_straight_and_lets_the_rest_slide() -> None:
     assert drive.contact is None
 
 
+def test_hard_knock_does_not_throw_the_body_back() -> None:
+    drive = Body(radius=0.5, max_speed=10.0).place(room(square(2)), (1.4, 0.0, 0.0))
+    assert drive.step(10.0, 0.0, 0.0249)
+    for _ in range(5):
+        drive.step(0.0, 0.0, 0.05)
+        assert drive.pose == pytest.approx((1.5, 0.0, 0.0), abs=1e-6)
+
+
 def test_no_wall_is_thin_enough_to_pass() -> None:
     wall = {"start": (0.5, -4.0), "end": (0.5, 4.0), "material": "brick"}
     drive = Body(max_speed=50.0).place(room(square(4), walls=[wall]), (0.0, 0.0, 0.1))

@@ -100,6 +100,9 @@ def test_seed_varies_walk_and_noise() -> None:
     ]
     assert np.abs(np.mean(noise[0] * noise[1])) < 0.001
     np.testing.assert_allclose(np.std(noise, axis=(1, 2)), 0.1, atol=0.01)
+    nose_rng = np.random.default_rng(np.random.SeedSequence(0).spawn(2)[1])
+    clean = Arena.load("open_field").odours.concentration(first.poses[:, :2])
+    np.testing.assert_array_equal(first.odours, Nose().smell(clean, first.times, nose_rng))
 
 
 def test_nose_and_camera_leave_the_walk_alone() -> None:

@@ -1,0 +1,215 @@
+"""The command line: `cogmap --help`."""
+
+from __future__ import annotations
+
+import json
+import sys
+import warnings
+from pathlib import Path
+from typing import Annotated, Any
+
+import cyclopts
+import numpy as np
+from cyclopts import App, Parameter
+
+from arena import Arena, ArenaError, Body, Brownian, Camera, Nose, Recording, explore
+from cogmap.cognitive_map import CognitiveMap
+from cogmap.errors import CogmapError
+from cogmap.experiments.demo import demo
+from cogmap.experiments.outputs import check_replaceable
+from cogmap.plots import plot_room
+from cogmap.scoring import score
+from cogmap.tables import as_table
+from neurons.errors import NeuronsError
+
+app = App(
+    name="cogmap",
+    help="Grow place cells and head-direction cells from sight and smell alone.",
+    version_flags=["--version"],
+    result_action="return_value",
+)
+
+Json = Annotated[bool, Parameter(name="--json", negative="", help="Print metrics as JSON on stdout.")]
+Seed = Annotated[int, Parameter(help="Of everything random; the same seed gives the same arrays.")]
+
+
+def main() -> None:
+    """Run a command; bad input gets one sentence on stderr and exit status 2."""
+    try:
+        app(exit_on_error=False, print_error=False)
+    except (ArenaError, NeuronsError, CogmapError, cyclopts.CycloptsError) as error:
+        sentence = " ".join(str(error).split())
+        sys.stderr.write(f"cogmap: {sentence}\n")
+        raise SystemExit(2) from None
+    except KeyboardInterrupt:
+        raise SystemExit(130) from None
+
+
+@app.command(name="demo")
+def _demo(
+    *,
+    arena: str = "furnished",
+    views: int = 17_000,
+    charts: int | None = None,
+    seed: Seed = 0,
+    out: Path = Path("demo"),
+    as_json: Json = False,
+) -> None:
+    """Explore a room, learn from sight and smell, and show the cells that emerge.
+
+    Examples: `cogmap demo`; `cogmap demo --arena pillar --seed 1 --json`; `cogmap demo --views 3000 --out small`.
+
+    Parameters
+    ----------
+    arena
+        A room of the gallery or a TOML file.
+    views
+        Views to learn from.
+    charts
+        Of the map; 3000 by default, a third of the views when these are few.
+    out
+        Folder for figures, map and metrics.
+    """
+    metrics = demo(Arena.load(arena), out, views=views, charts=charts, seed=seed, progress=sys.stderr.isatty())
+    if not metrics["trusted"]:
+        sys.stderr.write(f"cogmap: this map is not to be trusted: {metrics['reason']}\n")
+    _report(metrics, as_json=as_json)
+
+
+@app.command(name="arena")
+def _arena(name: str, /, *, out: Path | None = None, as_json: Json = False) -> None:
+    """Show a room: what is in it, and a picture of it from above.
+
+    Examples: `cogmap arena pillar --out pillar.png`; `cogmap arena my_room.toml --json`.
+
+    Parameters
+    ----------
+    name
+        A room of the gallery or a TOML file.
+    out
+        PNG to write the picture to; it must not exist.
+    """
+    room = Arena.load(name)
+    radius = Body().radius
+    described = {
+        "arena": room.name,
+        "walls": len(room.walls),
+        "boxes": len(room.boxes),
+        "pillars": len(room.pillars),
+        "odour_sources": len(room.sources),
+        "free_area_m2": float(room.free_space(radius).area),
+    }
+    if out is not None:
+        _check_absent(out)
+        plot_room(room).savefig(out)
+    _report(described, as_json=as_json)
+
+
+@app.command(name="explore")
+def _explore(
+    arena: str,
+    /,
+    *,
+    out: Path,
+    views: int = 17_000,
+    width: int = 360,
+    height: int = 60,
+    noise: float = 0.1,
+    seed: Seed = 0,
+    as_json: Json = False,
+) -> None:
+    """Walk through a room and record what is seen and smelt; a killed exploration goes on when called again.
+
+    Examples: `cogmap explore furnished --out walk.zarr`; `cogmap explore pillar --views 5000 --seed 1000 --out fresh.zarr`.
+
+    Parameters
+    ----------
+    arena
+        A room of the gallery or a TOML file.
+    out
+        Folder of the recording.
+    views
+        How many to take.
+    width, height
+        Of the panoramic views, pixels.
+    noise
+        Standard deviation of the log of the smelt concentration.
+    """
+    recording = explore(
+        Arena.load(arena),
+        Brownian(),
+        Camera.panoramic(width, height),
+        nose=Nose(noise=noise),
+        views=views,
+        seed=seed,
+        out=out,
+        progress=sys.stderr.isatty(),
+    )
+    _report({"recording": str(out), "views": len(recording), "odorants": recording.odours.shape[1]}, as_json=as_json)
+
+
+@app.command(name="learn")
+def _learn(
+    recording: Path, /, *, out: Path, charts: int | None = None, seed: Seed = 0, as_json: Json = False
+) -> None:
+    """Learn a map from the views and odours of a recording.
+
+    Examples: `cogmap learn walk.zarr --out map`; `cogmap learn walk.zarr --charts 1500 --seed 2 --out map2`.
+
+    Parameters
+    ----------
+    recording
+        Folder that `cogmap explore` wrote.
+    out
+        Folder of the map; it must not exist.
+    charts
+        Of the map; 3000 by default, a third of the views when these are few.
+    """
+    walk = Recording.open(recording).without_truth()
+    _check_absent(out)
+    cmap = CognitiveMap(charts=min(3000, len(walk) // 3) if charts is None else charts, seed=seed)
+    cmap.fit(walk.views, walk.odours, progress=sys.stderr.isatty())
+    cmap.save(out)
+    _report(
+        {"map": str(out), "charts": cmap.charts, "trusted": cmap.trusted_, "reason": cmap.reason_, "seconds": cmap.seconds_},
+        as_json=as_json,
+    )
+
+
+@app.command(name="score")
+def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False) -> None:
+    """Score a map on a fresh recording against the true poses.
+
+    Example: `cogmap score map fresh.zarr --train walk.zarr --json`.
+
+    Parameters
+    ----------
+    cmap
+        Folder that `cogmap learn` wrote.
+    recording
+        Fresh recording, which the map has not seen.
+    train
+        The recording that the map was learnt from, on which the decoder is fitted.
+    """
+    grown = CognitiveMap.load(cmap)
+    fresh, walk = _with_truth(recording), _with_truth(train)
+    seen, known = grown.perceive(fresh.views), grown.perceive(walk.views)
+    figures: dict[str, Any] = dict(score(seen, np.asarray(fresh.poses), train=(known, np.asarray(walk.poses))))
+    _report({"trusted": grown.trusted_, "reason": grown.reason_, **figures}, as_json=as_json)
+
+
+def _with_truth(path: Path) -> Recording:
+    recording = Recording.open(path)
+    if recording.poses is None:
+        raise CogmapError(f"{path} has no poses to score against; use a recording that kept them")
+    return recording
+
+
+def _check_absent(out: Path) -> None:
+    if out.exists():
+        raise CogmapError(f"{out} exists already and is left as it is; choose another path or remove it first")
+
+
+def _report(metrics: dict[str, Any], *, as_json: bool) -> None:
+    text = json.dumps(metrics, indent=2) if as_json else as_table(metrics)
+    sys.stdout.write(text + "\n")

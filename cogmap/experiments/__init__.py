@@ -1,0 +1,1 @@
+"""Experiments, one file each: data in, table and figures out."""

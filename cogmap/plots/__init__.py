@@ -1,0 +1,19 @@
+"""The figures, from results only: arrays in, a matplotlib Figure out."""
+
+from cogmap.plots.barcodes import plot_barcodes
+from cogmap.plots.compass import plot_compass
+from cogmap.plots.heading_cells import plot_tuning_curves
+from cogmap.plots.place_cells import plot_rate_maps
+from cogmap.plots.position import plot_position
+from cogmap.plots.room import plot_room
+from cogmap.plots.views import plot_views
+
+__all__ = [
+    "plot_barcodes",
+    "plot_compass",
+    "plot_position",
+    "plot_rate_maps",
+    "plot_room",
+    "plot_tuning_curves",
+    "plot_views",
+]
