@@ -36,7 +36,7 @@ Seed = Annotated[int, Parameter(help="Of everything random; the same seed gives 
 def main() -> None:
     """Run a command; bad input gets one sentence on stderr and exit status 2."""
     try:
-        app(exit_on_error=False, print_error=False)
+        app(sys.argv[1:], exit_on_error=False, print_error=False)
     except (ArenaError, NeuronsError, CogmapError, cyclopts.CycloptsError) as error:
         sentence = " ".join(str(error).split())
         sys.stderr.write(f"cogmap: {sentence}\n")
@@ -70,7 +70,9 @@ def _demo(
     out
         Folder for figures, map and metrics.
     """
-    metrics = demo(Arena.load(arena), out, views=views, charts=charts, seed=seed, progress=sys.stderr.isatty())
+    metrics = demo(
+        Arena.load(arena), out, views=views, charts=charts, seed=seed, progress=sys.stderr.isatty()
+    )
     if not metrics["trusted"]:
         sys.stderr.write(f"cogmap: this map is not to be trusted: {metrics['reason']}\n")
     _report(metrics, as_json=as_json)
@@ -145,7 +147,10 @@ def _explore(
         out=out,
         progress=sys.stderr.isatty(),
     )
-    _report({"recording": str(out), "views": len(recording), "odorants": recording.odours.shape[1]}, as_json=as_json)
+    _report(
+        {"recording": str(out), "views": len(recording), "odorants": recording.odours.shape[1]},
+        as_json=as_json,
+    )
 
 
 @app.command(name="learn")
@@ -171,7 +176,13 @@ def _learn(
     cmap.fit(walk.views, walk.odours, progress=sys.stderr.isatty())
     cmap.save(out)
     _report(
-        {"map": str(out), "charts": cmap.charts, "trusted": cmap.trusted_, "reason": cmap.reason_, "seconds": cmap.seconds_},
+        {
+            "map": str(out),
+            "charts": cmap.charts,
+            "trusted": cmap.trusted_,
+            "reason": cmap.reason_,
+            "seconds": cmap.seconds_,
+        },
         as_json=as_json,
     )
 
@@ -194,7 +205,9 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
     grown = CognitiveMap.load(cmap)
     fresh, walk = _with_truth(recording), _with_truth(train)
     seen, known = grown.perceive(fresh.views), grown.perceive(walk.views)
-    figures: dict[str, Any] = dict(score(seen, np.asarray(fresh.poses), train=(known, np.asarray(walk.poses))))
+    figures: dict[str, Any] = dict(
+        score(seen, np.asarray(fresh.poses), train=(known, np.asarray(walk.poses)))
+    )
     _report({"trusted": grown.trusted_, "reason": grown.reason_, **figures}, as_json=as_json)
 
 
@@ -207,7 +220,9 @@ def _with_truth(path: Path) -> Recording:
 
 def _check_absent(out: Path) -> None:
     if out.exists():
-        raise CogmapError(f"{out} exists already and is left as it is; choose another path or remove it first")
+        raise CogmapError(
+            f"{out} exists already and is left as it is; choose another path or remove it first"
+        )
 
 
 def _report(metrics: dict[str, Any], *, as_json: bool) -> None:

@@ -93,13 +93,13 @@ class CognitiveMap:
             Whether to show a bar on stderr.
         """
         check_views(views)
-        smells = torch.from_numpy(log_odours(odours, views=len(views)))
-        if len(views) < checked_count("charts", self.charts):
+        smells = torch.from_numpy(log_odours(odours, views=views.shape[0]))
+        if views.shape[0] < checked_count("charts", self.charts):
             raise CogmapError(
-                f"there are {len(views)} views for {self.charts} charts; "
+                f"there are {views.shape[0]} views for {self.charts} charts; "
                 "record more views or use fewer charts: about a fifth as many as views"
             )
-        self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=len(views))
+        self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=views.shape[0])
         order = np.random.default_rng(self.seed)
         with one_thread(), tqdm(total=sum(EPOCHS.values()), unit="epoch", disable=not progress) as bar:
             started = time.perf_counter()
@@ -109,7 +109,7 @@ class CognitiveMap:
                 bar.set_description(stage)
                 started = time.perf_counter()
                 for _ in range(epochs):
-                    for rows in torch.from_numpy(order.permutation(len(views))).split(BATCH):
+                    for rows in torch.from_numpy(order.permutation(views.shape[0])).split(BATCH):
                         self._layers.learn(strips[rows], smells[rows])
                     bar.update()
                 self.seconds_[stage] = time.perf_counter() - started
@@ -123,7 +123,7 @@ class CognitiveMap:
         fresh = not hasattr(self, "_layers")
         check_views(views, None if fresh else self.view_shape_)
         smells = torch.from_numpy(
-            log_odours(odours, views=len(views), odorants=None if fresh else self.odorants_)
+            log_odours(odours, views=views.shape[0], odorants=None if fresh else self.odorants_)
         )
         if fresh:
             self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=checked_count("epoch", self.epoch))
@@ -219,16 +219,17 @@ class CognitiveMap:
         self._retina = Retina(*view_shape[:2])
         self.view_shape_, self.odorants_ = view_shape, odorants
         self.seconds_: dict[str, float] = {}
-        self._layers = Layers(
-            self._retina.features,
-            odorants,
-            charts=checked_count("charts", self.charts),
-            components=checked_count("components", self.components, 3),
-            place_cells=checked_count("place_cells", self.place_cells),
-            heading_cells=checked_count("heading_cells", self.heading_cells),
-            epoch=epoch,
-            generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
-        )
+        with one_thread():  # even the initial weights, orthonormal by QR, depend on the number of threads
+            self._layers = Layers(
+                self._retina.features,
+                odorants,
+                charts=checked_count("charts", self.charts),
+                components=checked_count("components", self.components, 3),
+                place_cells=checked_count("place_cells", self.place_cells),
+                heading_cells=checked_count("heading_cells", self.heading_cells),
+                epoch=epoch,
+                generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
+            )
 
     def _check_grown(self) -> None:
         if not hasattr(self, "_layers"):
@@ -236,7 +237,7 @@ class CognitiveMap:
 
     def _strips(self, views: Any) -> Iterator[tuple[slice, Float[Tensor, "views features"]]]:
         """Pass views through the retina in fixed batches."""
-        for start in range(0, len(views), BATCH):
+        for start in range(0, views.shape[0], BATCH):
             rows = slice(start, start + BATCH)
             yield rows, self._retina(torch.from_numpy(np.ascontiguousarray(views[rows])))
 

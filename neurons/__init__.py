@@ -1,1 +1,1 @@
-"""Plastic layers, learning by local Hebbian rules; they are handed views and odours, and know of nothing else."""
+"""Plastic layers that learn by local Hebbian rules; handed views and odours, they know nothing else."""

@@ -10,12 +10,14 @@ from neurons.recall import Excited
 class Afferents(nn.Module):
     """Hebbian association of chart activity a_k with instructed rates r_i, kept as sums.
 
-    The weight is the mean rate while the chart was active, W_ki = Σ a_k r_i / Σ a_k, the fixed point of the presynaptically
-    gated rule ΔW_ki = η a_k (r_i − W_ki). Afterwards a cell fires from sight alone, r_i = Σ_k a_k W_ki.
+    The weight is the mean rate while the chart was active, W_ki = Σ a_k r_i / Σ a_k, the fixed point of the
+    presynaptically gated rule ΔW_ki = η a_k (r_i − W_ki). Afterwards a cell fires from sight alone,
+    r_i = Σ_k a_k W_ki.
 
     References
     ----------
-    Grossberg (1976), Adaptive pattern classification and universal recoding I. Biological Cybernetics 23 (outstar rule).
+    Grossberg (1976), Adaptive pattern classification and universal recoding I. Biological Cybernetics 23
+    (outstar rule).
     """
 
     association: Tensor

@@ -23,7 +23,7 @@ class Atlas:
     pool
         The nearest charts of each chart, itself first.
     edges
-        Pairs (k, l), k < l, of overlapping charts, each once, in order.
+        Pairs (k, j), k < j, of overlapping charts, each once, in order.
     spacing
         Root-mean-square distance to the overlapping charts, in units of the code.
     """

@@ -6,8 +6,6 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from neurons.errors import NeuronsError
-
 DIMENSIONS = 3
 """Degrees of freedom of a body on the floor, hence tangents per chart."""
 
@@ -23,9 +21,10 @@ class Excitation(NamedTuple):
 class Charts(nn.Module):
     """Competitive local PCA: K centres C_k tile the codes, each with tangents U_k along the manifold.
 
-    A view z excites its m nearest centres. The centre of rank r learns with h = exp(−2 r / m): C_k moves to the
-    running mean of h z, and U_k follows Sanger's rule on the residuals z − C_k, normalised by their variance as in
-    `neurons.oja.Sanger`. `freeze` makes the tangents orthonormal; after it nothing here changes any more.
+    A view z excites its m nearest centres. The centre of rank r learns with h = exp(−2 r / m): C_k moves to
+    the running mean of h z, and U_k follows Sanger's rule on the residuals z − C_k, normalised by their
+    variance as in `neurons.oja.Sanger`. `freeze` makes the tangents orthonormal; after it nothing here
+    changes any more.
 
     Parameters
     ----------
@@ -36,7 +35,8 @@ class Charts(nn.Module):
 
     References
     ----------
-    Martinetz, Berkovich & Schulten (1993), 'Neural-gas' network. IEEE Trans. Neural Networks 4 (competition by rank).
+    Martinetz, Berkovich & Schulten (1993), 'Neural-gas' network. IEEE Trans. Neural Networks 4 (competition
+    by rank).
     Kambhatla & Leen (1997), Dimension reduction by local principal component analysis. Neural Computation 9.
     """
 
@@ -73,24 +73,20 @@ class Charts(nn.Module):
         residual = codes[:, None] - self.centres[chart]
         return torch.einsum("nwdc,nwc->nwd", self.tangents[chart], residual)
 
-    def partial_fit(
-        self, codes: Float[Tensor, "views components"], *, winners: int, memory: float
-    ) -> None:
+    def partial_fit(self, codes: Float[Tensor, "views components"], *, winners: int, memory: float) -> None:
         """Let a batch of codes compete.
 
-        The first K codes ever seen become the centres. `winners` is m; `memory` is how many views a centre remembers
-        when it averages.
+        The first K codes ever seen, over as many batches as it takes, become the centres; the rest compete.
+        `winners` is m; `memory` is how many views a centre remembers when it averages.
         """
-        free = len(self) - int(self.placed)
-        if free:
-            fresh = codes[:free]
-            self.centres[int(self.placed) : int(self.placed) + len(fresh)] = fresh
-            self.placed += len(fresh)
-            codes = codes[free:]
-        if not len(codes):
-            return
-        if int(self.placed) < len(self):
-            raise NeuronsError("internal")
+        placed = int(self.placed)
+        fresh, rest = codes[: len(self) - placed], codes[len(self) - placed :]
+        self.centres[placed : placed + len(fresh)] = fresh
+        self.placed += len(fresh)
+        if len(rest):
+            self._compete(rest, winners=winners, memory=memory)
+
+    def _compete(self, codes: Float[Tensor, "views components"], *, winners: int, memory: float) -> None:
         chart = self.excite(codes, winners).chart
         h = torch.exp(-2.0 * torch.arange(chart.shape[1]) / chart.shape[1])
         flat, weight = chart.flatten(), h.repeat(len(codes))

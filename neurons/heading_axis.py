@@ -12,11 +12,11 @@ def heading_axes(
     jacobians: Float[Tensor, "charts 3 odorants"],
     atlas: Atlas,
 ) -> Float[Tensor, "charts components"]:
-    """Unit vectors n_k, up to sign, along which the pooled odour gradients vanish.
+    """Find the unit vectors n_k, up to sign, along which the pooled odour gradients vanish.
 
-    Walking changes the smell and turning does not, so the heading axis is the null direction of the odour Jacobian:
-    with G_j = U_jᵀ J_j pooled over neighbours j of k, M_k = Σ (U_k G_j)(U_k G_j)ᵀ, the axis is the eigenvector of the
-    smallest eigenvalue; lines n nᵀ are then averaged over the neighbours.
+    Walking changes the smell and turning does not, so the heading axis is the null direction of the odour
+    Jacobian: with G_j = U_jᵀ J_j pooled over neighbours j of k, M_k = Σ (U_k G_j)(U_k G_j)ᵀ, the axis is the
+    eigenvector of the smallest eigenvalue; lines n nᵀ are then averaged over the neighbours.
     """
     gradients = tangents.mT @ jacobians
     gradients = gradients / gradients.square().sum(dim=(1, 2), keepdim=True).sqrt().clamp(min=1e-12)

@@ -16,7 +16,9 @@ WINNERS = 3
 class HeadDirectionCells(nn.Module):
     """Competitive learning on the circle, then afferents from sight.
 
-    Units share out the headings as their preferred directions p_i; the tuning is r_i(θ) = 20 Hz · exp(κ (cos(θ − p_i) − 1)).
+    Units share out the headings as their preferred directions p_i; the tuning is
+
+        r_i(θ) = 20 Hz · exp(κ (cos(θ − p_i) − 1)).
 
     Parameters
     ----------

@@ -12,8 +12,9 @@ class Sanger(nn.Module):
 
         ΔW = η Λ⁻¹ (⟨y xᵀ⟩ − LT⟨y yᵀ⟩ W − Λ W),   then each row of W is scaled to unit length.
 
-    Λ holds each neuron's output variance λ, learnt as the length of λw + η(…): the rate divided by it makes weak components
-    converge as fast as strong ones. η falls from a half as 1 / n, n in batches, after the first 40.
+    Λ holds each neuron's output variance λ, learnt as the length of λw + η(…): the rate divided by it makes
+    weak components converge as fast as strong ones. η falls from a half as 1 / n, n in batches, after the
+    first 40.
 
     Parameters
     ----------
@@ -24,8 +25,10 @@ class Sanger(nn.Module):
 
     References
     ----------
-    Sanger (1989), Optimal unsupervised learning in a single-layer linear feedforward neural network. Neural Networks 2.
-    Weng, Zhang & Hwang (2003), Candid covariance-free incremental principal component analysis. IEEE PAMI 25 (the rate).
+    Sanger (1989), Optimal unsupervised learning in a single-layer linear feedforward neural network. Neural
+    Networks 2.
+    Weng, Zhang & Hwang (2003), Candid covariance-free incremental principal component analysis. IEEE PAMI 25
+    (the rate).
     """
 
     mean: Tensor

@@ -13,8 +13,8 @@ RIDGE = 1e-3
 class Olfaction(nn.Module):
     """Per chart, the regression of log odour on f = [1, U_k (z − C_k)], kept as sums.
 
-    Each view adds h f fᵀ and h f oᵀ to the charts it excites; `solve` gives the intercepts a_k and Jacobians J_k. Sums can be
-    added to by a stream and merged between maps grown from the same charts.
+    Each view adds h f fᵀ and h f oᵀ to the charts it excites; `solve` gives the intercepts a_k and Jacobians
+    J_k. Sums can be added to by a stream and merged between maps grown from the same charts.
     """
 
     gram: Tensor
@@ -41,7 +41,7 @@ class Olfaction(nn.Module):
         self.cross.index_add_(0, chart.flatten(), cross)
 
     def solve(self) -> tuple[Float[Tensor, "charts odorants"], Float[Tensor, "charts 3 odorants"]]:
-        """Intercepts (log concentration at the centre) and Jacobians (per unit of chart coordinate)."""
+        """Give intercepts (log concentration at the centre) and Jacobians (per unit of chart coordinate)."""
         gram = self.gram.double()
         slopes = torch.diagonal(gram, dim1=1, dim2=2)[:, 1:].mean(dim=1)
         prior = torch.zeros_like(gram)

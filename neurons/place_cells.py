@@ -17,8 +17,8 @@ FLATNESS = 0.05
 class PlaceCells(nn.Module):
     """Competitive learning on log odour, then afferents from sight.
 
-    Each smell o is learnt by the nearest units: c_i is the running mean and Σ_i the running covariance of what unit i has
-    won, so that fields follow the geometry of the smells. Its tuning is
+    Each smell o is learnt by the nearest units: c_i is the running mean and Σ_i the running covariance of
+    what unit i has won, so that fields follow the geometry of the smells. Its tuning is
 
         r_i(o) = 20 Hz · exp(−½ (o − c_i)ᵀ Σ_i⁻¹ (o − c_i)).
 

@@ -1,6 +1,6 @@
 """What a frozen atlas says of a view: where it smells, and which way it faces."""
 
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import torch
 from jaxtyping import Float, Int
@@ -27,7 +27,8 @@ class Excited(NamedTuple):
 class Recall(nn.Module):
     """Reads heading and odour off the charts that a view excites.
 
-    A view z excites its nearest charts with weights w ∝ exp(−|z − C_k|² / 2 h_k²), h_k a fraction of the chart's spacing.
+    A view z excites its nearest charts with weights w ∝ exp(−|z − C_k|² / 2 h_k²), h_k a fraction of the
+    chart's spacing.
 
         θ̂ = arg Σ w exp i(φ_k + c n_k·(z − C_k)),        ô = Σ w (a_k + J_kᵀ U_k (z − C_k)).
     """
@@ -52,13 +53,12 @@ class Recall(nn.Module):
         compass: Compass | None,
         intercepts: Float[Tensor, "charts odorants"],
         jacobians: Float[Tensor, "charts 3 odorants"],
-    ) -> Self:
+    ) -> None:
         """Take over what the charts have agreed on; without a compass headings stay NaN."""
         self.spacing = atlas.spacing
         self.intercepts, self.jacobians = intercepts, jacobians
         if compass is not None:
             self.phases, self.turning = compass.phases, compass.scale * compass.axes
-        return self
 
     def excite(self, charts: Charts, codes: Float[Tensor, "views components"]) -> Excited:
         """Activity of the nearest charts."""

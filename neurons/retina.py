@@ -31,8 +31,8 @@ class Retina(nn.Module):
 
         G_acuity [ Y / (s + floor · ⟨s⟩) ],   s² = G_pool ⟨Y²⟩ over rows and colours,
 
-    where G_σ blurs around the ring with a Gaussian of σ columns. The gain control makes turning and walking move the
-    output in orthogonal directions, whatever fills the view. Fixed: nothing is learnt here.
+    where G_σ blurs around the ring with a Gaussian of σ columns. The gain control makes turning and walking
+    move the output in orthogonal directions, whatever fills the view. Fixed: nothing is learnt here.
 
     Parameters
     ----------
@@ -101,4 +101,5 @@ class Retina(nn.Module):
         strip = colours @ self.centre_surround
         contrast = (strip.square().mean(dim=1, keepdim=True) @ self.pooling).sqrt()
         gain = contrast + self.floor * contrast.mean(dim=2, keepdim=True) + 1e-6
-        return (strip / gain @ self.blur).flatten(1)
+        blurred: Tensor = strip / gain @ self.blur
+        return blurred.flatten(1)

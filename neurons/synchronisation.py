@@ -35,7 +35,7 @@ class Compass:
     phases
         φ_k, heading of each chart's centre in the map's own frame, rad.
     sign_agreement
-        Σ s_k s_l n_k·n_l / Σ |n_k·n_l| over the overlaps; 1 when the ring can be oriented.
+        Σ s_k s_j n_k·n_j / Σ |n_k·n_j| over the overlaps; 1 when the ring can be oriented.
     eigenvalue
         Top eigenvalue of the phase synchronisation; 1 when every overlap agrees.
     """
@@ -49,17 +49,17 @@ class Compass:
 
 @dataclass(frozen=True)
 class _Overlaps:
-    """The atlas as a sparse Hermitian matrix: weight of edge (k, l), conjugate of (l, k), degree-normalised."""
+    """The atlas as a sparse Hermitian matrix of degree-normalised weights, (j, k) conjugate to (k, j)."""
 
     edges: Int[np.ndarray, "edges 2"]
     count: int
 
     def top(self, weight: Complex[np.ndarray, "edges"]) -> tuple[float, Complex[np.ndarray, "charts"]]:
         """Largest eigenvalue and its vector, by inverse iteration just above 1, the bound of the spectrum."""
-        k, l = self.edges.T
+        k, j = self.edges.T
         degree = np.bincount(self.edges.ravel(), minlength=self.count)
-        entry = weight / np.sqrt(degree[k] * degree[l])
-        index = (np.r_[k, l], np.r_[l, k])
+        entry = weight / np.sqrt(degree[k] * degree[j])
+        index = (np.r_[k, j], np.r_[j, k])
         matrix = csc_array((np.r_[entry, entry.conj()], index), shape=(self.count, self.count))
         start = np.sqrt(degree).astype(complex)
         value, vector = eigsh(matrix, k=1, sigma=1 + 1e-4, v0=start, tol=1e-8)
@@ -73,12 +73,12 @@ def synchronise(
 ) -> Compass:
     """Make local heading axes agree on a direction of turning, a scale and a phase.
 
-    Signs: Z₂ synchronisation, the top eigenvector of the degree-normalised n_k·n_l over the overlaps. Phases: with
-    ω_kl = ½ (C_l − C_k)·(n_k + n_l), the Hermitian exp(i c ω) has an eigenvalue near 1 when a walk around any loop of
-    charts turns by whole turns. The
-    eigenvalue λ(c) falls as c leaves 0, rises to a first interior maximum where the ring closes after exactly one turn,
-    and has others at the harmonics. The first is found on cells of charts, refined by a parabola in log c, and the
-    phases of the eigenvector at that scale are the headings of the charts.
+    Signs: Z₂ synchronisation, the top eigenvector of the degree-normalised n_k·n_j over the overlaps.
+    Phases: with ω_kj = ½ (C_j − C_k)·(n_k + n_j), the Hermitian exp(i c ω) has an eigenvalue near 1 when a
+    walk around any loop of charts turns by whole turns. The eigenvalue λ(c) falls as c leaves 0, rises to a
+    first interior maximum where the ring closes after exactly one turn, and has others at the harmonics. The
+    first is found on cells of charts, refined by a parabola in log c, and the phases of the eigenvector at
+    that scale are the headings of the charts.
 
     Raises
     ------
@@ -90,17 +90,18 @@ def synchronise(
     Singer (2011), Angular synchronization by eigenvectors and semidefinite programming. ACHA 30.
     """
     overlaps = _Overlaps(atlas.edges.numpy(), len(centres))
-    k, l = overlaps.edges.T
-    pieces = connected_components(csc_array((np.ones(len(k)), (k, l)), shape=(len(centres),) * 2), directed=False)[0]
+    k, j = overlaps.edges.T
+    graph = csc_array((np.ones(len(k)), (k, j)), shape=(len(centres),) * 2)
+    pieces, _ = connected_components(graph, directed=False)
     if pieces > 1:
         raise NeuronsError(f"the atlas falls into {pieces} pieces; use more charts or more views")
     n, c = axes.double().numpy(), centres.double().numpy()
-    agreement = np.einsum("ec,ec->e", n[k], n[l])
+    agreement = np.einsum("ec,ec->e", n[k], n[j])
     _, vector = overlaps.top(agreement.astype(complex))
     sign = np.where((vector * vector[np.argmax(np.abs(vector))].conj()).real < 0, -1.0, 1.0)
     n = n * sign[:, None]
-    signed = sign[k] * sign[l] * agreement
-    omega = 0.5 * np.einsum("ec,ec->e", c[l] - c[k], n[k] + n[l])
+    signed = sign[k] * sign[j] * agreement
+    omega = 0.5 * np.einsum("ec,ec->e", c[j] - c[k], n[k] + n[j])
     scale, eigenvalue, phases = _close_ring(overlaps, omega)
     return Compass(
         axes=torch.from_numpy(n).float(),
@@ -131,27 +132,27 @@ def _close_ring(
 def _coarse_eigenvalues(
     overlaps: _Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"]
 ) -> Float[np.ndarray, "scales"]:
-    """Bound the top eigenvalue from below at many scales, by Rayleigh and Ritz on cells of charts that turn together.
+    """Bound the top eigenvalue from below at many scales, by Rayleigh and Ritz on cells that turn together.
 
-    Within a cell the phases follow c times the integral of ω from its root along shortest paths, which is close to what
-    synchronisation finds; so the bound is tight, and its matrix is small.
+    Within a cell the phases follow c times the integral of ω from its root along shortest paths, which is
+    close to what synchronisation finds; so the bound is tight, and its matrix is small.
     """
-    k, l = overlaps.edges.T
+    k, j = overlaps.edges.T
     count = overlaps.count
-    graph = csc_array((np.ones(len(k)), (k, l)), shape=(count, count))
+    graph = csc_array((np.ones(len(k)), (k, j)), shape=(count, count))
     roots = np.linspace(0, count - 1, min(CELLS, count)).astype(int)
     steps, before, source = dijkstra(
         graph, directed=False, unweighted=True, indices=roots, min_only=True, return_predecessors=True
     )
     cell = np.searchsorted(roots, source)
-    step = csc_array((np.r_[omega, -omega], (np.r_[k, l], np.r_[l, k])), shape=(count, count)).tocsr()
+    step = csc_array((np.r_[omega, -omega], (np.r_[k, j], np.r_[j, k])), shape=(count, count)).tocsr()
     potential = np.zeros(count)
     for depth in range(1, int(steps.max()) + 1):
         shell = np.flatnonzero(steps == depth)
         potential[shell] = potential[before[shell]] + step[before[shell], shell]
-    across = potential[k] + omega - potential[l]
+    across = potential[k] + omega - potential[j]
     size = len(roots)
-    pair = cell[k] * size + cell[l]
+    pair = cell[k] * size + cell[j]
     degree = np.bincount(cell[overlaps.edges.ravel()], minlength=size)
     norm = 1 / np.sqrt(np.outer(degree, degree))
     values = []

@@ -7,7 +7,7 @@ import resource
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -69,6 +69,7 @@ def demo(
     *,
     views: int = 17_000,
     charts: int | None = None,
+    landmarks: tuple[int, int] = (400, 150),
     seed: int = 0,
     progress: bool = False,
 ) -> dict[str, Any]:
@@ -84,6 +85,8 @@ def demo(
         Views to learn from.
     charts
         Of the map; 3000, or a third of the views when these are fewer than 9,000.
+    landmarks
+        On which loops and voids are measured.
     seed
         Of walk, noise and initial weights; the fresh walk uses seed + 1000.
     progress
@@ -101,61 +104,54 @@ def demo(
     """
     checked_count("views", views, 20)
     charts = min(3000, views // 3) if charts is None else charts
-    if out is None:
-        return _run(room, None, views=views, charts=charts, seed=seed, progress=progress)
-    with result_folder(out) as folder:
-        return _run(room, folder, views=views, charts=charts, seed=seed, progress=progress)
+    with nullcontext() if out is None else result_folder(out) as folder:
+        clock = Stopwatch()
+        camera, nose = Camera.panoramic(), Nose()
 
+        def walk(count: int, number: int) -> Recording:
+            return explore(room, Brownian(), camera, nose=nose, views=count, seed=number, progress=progress)
 
-def _run(
-    room: Arena, folder: Path | None, *, views: int, charts: int, seed: int, progress: bool
-) -> dict[str, Any]:
-    clock = Stopwatch()
-    camera, nose = Camera.panoramic(), Nose()
-
-    def walk(count: int, number: int) -> Recording:
-        return explore(
-            room, Brownian(), camera, nose=nose, views=count, seed=number, progress=progress
-        )
-
-    with clock("explore"):
-        learnt, fresh = walk(views, seed), walk(min(views, FRESH), seed + FRESH_SEED)
-    truth, fresh_truth = _poses(learnt), _poses(fresh)
-    with clock("learn"):
-        cmap = CognitiveMap(charts=charts, seed=seed).fit(learnt.views, learnt.odours, progress=progress)
-    with clock("perceive"):
-        before, after = cmap.perceive(learnt.views), cmap.perceive(fresh.views)
-    with clock("score"):
-        reachable = room.sample_free(20_000, Body().radius, np.random.default_rng(0))
-        figures = score(after, fresh_truth, train=(before, truth), reachable=reachable)
-        nose_error = position_errors(
-            np.log(learnt.odours), truth[:, :2], np.log(fresh.odours), fresh_truth[:, :2]
-        )
-    with clock("homology"):
-        bars = homologies(cmap.encode(learnt.views), before, seed=seed)
-    metrics: dict[str, Any] = {
-        "arena": room.name,
-        "seed": seed,
-        "views": views,
-        "charts": charts,
-        "trusted": cmap.trusted_,
-        "reason": cmap.reason_,
-        **figures,
-        "nose_position_median_m": float(np.median(nose_error)),
-        "nose_position_p95_m": float(np.percentile(nose_error, 95)),
-        **{f"betti_{name}": list(found.numbers) for name, found in bars.items()},
-        "betti_votes": {name: list(found.votes) for name, found in bars.items()},
-        "phase_eigenvalue": cmap.phase_eigenvalue_,
-    }
-    if folder is not None:
-        with clock("figures"):
-            _draw(folder, room, learnt, fresh, before, after, bars, progress=progress)
-            cmap.save(folder / "map")
-    metrics["seconds"] = {**clock.seconds, "learn_by_stage": {k: round(v, 3) for k, v in cmap.seconds_.items()}}
-    metrics["peak_memory_bytes"] = _peak_memory()
-    if folder is not None:
-        (folder / METRICS).write_text(json.dumps(metrics, indent=2) + "\n", encoding="utf-8")
-    return metrics
+        with clock("explore"):
+            learnt, fresh = walk(views, seed), walk(min(views, FRESH), seed + FRESH_SEED)
+        truth, fresh_truth = _poses(learnt), _poses(fresh)
+        with clock("learn"):
+            cmap = CognitiveMap(charts=charts, seed=seed).fit(learnt.views, learnt.odours, progress=progress)
+        with clock("perceive"):
+            before, after = cmap.perceive(learnt.views), cmap.perceive(fresh.views)
+        with clock("score"):
+            reachable = room.sample_free(20_000, Body().radius, np.random.default_rng(0))
+            figures = score(after, fresh_truth, train=(before, truth), reachable=reachable)
+            nose_error = position_errors(
+                np.log(learnt.odours), truth[:, :2], np.log(fresh.odours), fresh_truth[:, :2]
+            )
+        with clock("homology"):
+            bars = homologies(cmap.encode(learnt.views), before, landmarks=landmarks, seed=seed)
+        metrics: dict[str, Any] = {
+            "arena": room.name,
+            "seed": seed,
+            "views": views,
+            "charts": charts,
+            "trusted": cmap.trusted_,
+            "reason": cmap.reason_,
+            **figures,
+            "nose_position_median_m": float(np.median(nose_error)),
+            "nose_position_p95_m": float(np.percentile(nose_error, 95)),
+            **{f"betti_{name}": list(found.numbers) for name, found in bars.items()},
+            "betti_votes": {name: list(found.votes) for name, found in bars.items()},
+            "phase_eigenvalue": cmap.phase_eigenvalue_,
+        }
+        if folder is not None:
+            with clock("figures"):
+                _draw(folder, room, learnt, fresh, before, after, bars, progress=progress)
+                cmap.save(folder / "map")
+        metrics["seconds"] = {
+            **clock.seconds,
+            "learn_by_stage": {k: round(v, 3) for k, v in cmap.seconds_.items()},
+        }
+        metrics["peak_memory_bytes"] = _peak_memory()
+        if folder is not None:
+            (folder / METRICS).write_text(json.dumps(metrics, indent=2) + "\n", encoding="utf-8")
+        return metrics
 
 
 def _draw(

@@ -11,17 +11,28 @@ JOBS = 2
 
 
 def homologies(
-    codes: Float[np.ndarray, "views components"], activity: Activity, *, seed: int = 0
+    codes: Float[np.ndarray, "views components"],
+    activity: Activity,
+    *,
+    landmarks: tuple[int, int] = (400, 150),
+    seed: int = 0,
 ) -> dict[str, Betti]:
     """Betti numbers of the view manifold, the fused map and both populations.
 
-    The fused map is (recalled log odour, cos φ, sin φ). Computed side by side in `JOBS` processes.
+    The view manifold is the codes, the fused map (recalled log odour, cos φ, sin φ), a population the square roots of its
+    rates, whose Poisson noise is the same at every rate. Computed side by side in `JOBS` processes.
+
+    References
+    ----------
+    Bartlett (1936), The square root transformation in analysis of variance. J. R. Stat. Soc. Suppl. 3.
     """
     clouds = {
         "view_manifold": codes,
         "fused": np.column_stack([activity.odour, np.cos(activity.phase), np.sin(activity.phase)]),
-        "place": activity.place,
-        "heading": activity.heading,
+        "place": np.sqrt(activity.place),
+        "heading": np.sqrt(activity.heading),
     }
-    found = Parallel(n_jobs=JOBS)(delayed(betti)(cloud, seed=seed) for cloud in clouds.values())
+    found = Parallel(n_jobs=JOBS)(
+        delayed(betti)(cloud, landmarks=landmarks, seed=seed) for cloud in clouds.values()
+    )
     return dict(zip(clouds, found, strict=True))

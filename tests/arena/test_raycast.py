@@ -3,7 +3,7 @@ from collections.abc import Callable
 import numpy as np
 import pymunk
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from arena import camera as eye
@@ -20,8 +20,8 @@ BEHIND_LOW_BOXES = Arena.create(
         {"start": (2.2, 1.1), "end": (2.9, 2.6), "height": 0.2, "material": "timber"},
     ],
     boxes=[
-        {"center": (1.6, 0), "size": (2, 0.8), "height": 0.15, "material": "plaid"},
         {"center": (2.9, 0), "size": (0.6, 0.8), "height": 0.2, "material": "tiles"},
+        {"center": (1.6, 0), "size": (2, 0.8), "height": 0.15, "material": "plaid"},
         {"center": (1.9, 1.3), "size": (0.4, 0.6), "angle_deg": 20, "height": 0.45, "material": "oak"},
     ],
     pillars=[{"center": (1.7, -1.2), "radius": 0.4, "height": 0.1, "material": "mosaic"}],
@@ -209,6 +209,12 @@ heading = st.integers(-4, 4).map(lambda n: n * np.pi / 4) | st.floats(-np.pi, np
     walls=solid_walls,
     boxes=st.lists(box, min_size=1, max_size=3),
     poses=st.lists(st.tuples(coordinate, coordinate, heading), min_size=1, max_size=3),
+)
+@example(
+    walls=[{"start": (-1.0, 0.0), "end": (1.0, 0.0), "material": "brick"}],
+    boxes=[{"center": (1.5, 0.0), "size": (1.0, 1.0), "material": "oak"}],
+    poses=[(0.0, 0.0, n * np.pi / 4) for n in range(8)]
+    + [(-1.0, 0.0, 0.0), (1.0, 0.5, 1.0), (1.5, 0.0, 0.0)],
 )
 @settings(max_examples=60, deadline=None)
 def test_what_covers_a_pixel_adds_up_to_one(

@@ -1,0 +1,5 @@
+"""`python -m cogmap`: the command line."""
+
+from cogmap.cli import main
+
+main()

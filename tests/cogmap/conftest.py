@@ -1,0 +1,31 @@
+from collections.abc import Callable
+
+import pytest
+
+from arena import Arena, Brownian, Camera, Recording, explore
+from cogmap import CognitiveMap
+
+VIEWS, CHARTS = 2500, 700
+
+
+@pytest.fixture(scope="session")
+def camera() -> Camera:
+    return Camera.panoramic(90, 15)
+
+
+@pytest.fixture(scope="session")
+def walk(camera: Camera) -> Recording:
+    return explore(Arena.load("furnished"), Brownian(), camera, views=VIEWS, seed=0)
+
+
+@pytest.fixture(scope="session")
+def grow() -> Callable[[Recording], CognitiveMap]:
+    def fit(recording: Recording, *, seed: int = 0) -> CognitiveMap:
+        return CognitiveMap(charts=CHARTS, components=40, seed=seed).fit(recording.views, recording.odours)
+
+    return fit
+
+
+@pytest.fixture(scope="session")
+def cmap(walk: Recording, grow: Callable[[Recording], CognitiveMap]) -> CognitiveMap:
+    return grow(walk)

@@ -1,0 +1,50 @@
+import json
+from pathlib import Path
+from typing import Any
+
+import matplotlib.image
+import pytest
+
+from arena import Arena
+from cogmap import CogmapError, CognitiveMap
+from cogmap.experiments.demo import demo
+
+FIGURES = ["barcodes", "compass", "heading_cells", "place_cells", "position", "room", "views"]
+KEYS = {
+    "position_median_m", "position_p95_m", "nose_position_median_m", "nose_position_p95_m",
+    "heading_median_deg", "heading_p95_deg", "heading_resultant", "place_cells_passing", "place_coverage",
+    "heading_cells_passing", "betti_view_manifold", "betti_fused", "betti_place", "betti_heading",
+    "seconds", "peak_memory_bytes", "views", "trusted",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
+    out = tmp_path_factory.mktemp("demo") / "out"
+    return out, demo(Arena.load("furnished"), out, views=3000, landmarks=(150, 60), seed=0)
+
+
+def test_it_writes_every_figure_the_map_and_the_metrics(result: tuple[Path, dict[str, Any]]) -> None:
+    out, metrics = result
+    assert sorted(file.stem for file in out.glob("*.png")) == FIGURES
+    for name in FIGURES:
+        assert matplotlib.image.imread(out / f"{name}.png").std() > 0.01
+    assert json.loads((out / "metrics.json").read_text(encoding="utf-8")) == metrics
+    assert CognitiveMap.load(out / "map").trusted_ == metrics["trusted"]
+    assert metrics.keys() >= KEYS
+
+
+def test_even_a_small_one_learns(result: tuple[Path, dict[str, Any]]) -> None:
+    _, metrics = result
+    assert metrics["trusted"], metrics["reason"]
+    assert metrics["heading_resultant"] > 0.98
+    assert 1.5 * metrics["position_median_m"] < metrics["nose_position_median_m"]
+    assert metrics["heading_cells_passing"] > 0.9
+    assert metrics["betti_heading"] == [1, 1, 0]
+    assert metrics["peak_memory_bytes"] > 1e8
+
+
+def test_too_few_views_are_refused_and_nothing_is_written(tmp_path: Path) -> None:
+    with pytest.raises(CogmapError, match="views is 0"):
+        demo(Arena.load("furnished"), tmp_path / "out", views=0)
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,167 @@
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from arena import Arena, Recording
+from cogmap import CognitiveMap, cli
+
+FURNISHED = Arena.load("furnished").to_toml()
+
+
+@pytest.fixture
+def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    def call(*words: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["cogmap", *map(str, words)])
+        try:
+            cli.main()
+        except SystemExit as stop:
+            status = int(stop.code or 0)
+        else:
+            status = 0
+        out, err = capsys.readouterr()
+        return status, out, err
+
+    return call
+
+
+def refused(result: tuple[int, str, str], *words: str) -> None:
+    status, out, err = result
+    assert status == 2, err
+    assert not out
+    assert err.startswith("cogmap: ")
+    assert len(err.splitlines()) == 1
+    for word in words:
+        assert word in err
+
+
+@pytest.fixture(scope="module")
+def folder(walk: Recording, cmap: CognitiveMap, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp("cli")
+    walk.save(place / "walk.zarr")
+    walk[:300].without_truth().save(place / "blind.zarr")
+    cmap.save(place / "map")
+    (place / "junk.zarr").mkdir()
+    (place / "junk.zarr" / "zarr.json").write_text("junk", encoding="utf-8")
+    shutil.copytree(place / "walk.zarr", place / "half.zarr")
+    shards = sorted(file for file in (place / "half.zarr" / "views").rglob("*") if file.is_file())
+    next(file for file in shards if file.name != "zarr.json").unlink()
+    return place
+
+
+def test_explore_learn_score(run, folder: Path, tmp_path: Path) -> None:
+    explored = run("explore", "furnished", "--views", 400, "--width", 90, "--height", 15, "--seed", 1000,
+                   "--out", tmp_path / "fresh.zarr", "--json")  # fmt: skip
+    assert explored[0] == 0
+    assert json.loads(explored[1])["views"] == 400
+    assert run("learn", folder / "walk.zarr", "--out", tmp_path / "map", "--charts", 700)[0] == 0
+    assert CognitiveMap.load(tmp_path / "map").charts == 700
+    status, out, err = run(
+        "score", tmp_path / "map", tmp_path / "fresh.zarr", "--train", folder / "walk.zarr", "--json"
+    )
+    assert status == 0, err
+    assert json.loads(out)["heading_resultant"] > 0.95
+
+
+def test_arena_shows_a_room(run, tmp_path: Path) -> None:
+    status, out, _ = run("arena", "pillar", "--out", tmp_path / "room.png", "--json")
+    assert status == 0
+    assert json.loads(out)["pillars"] == 1
+    assert (tmp_path / "room.png").read_bytes().startswith(b"\x89PNG")
+    refused(run("arena", "pillar", "--out", tmp_path / "room.png"), "exists already")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("walls = [", ["not TOML"]),
+        ("", ["empty"]),
+        (FURNISHED + "\nsofa = 3\n", ["sofa"]),
+        (FURNISHED.replace("end = [\n    3.0,\n    -2.5,", "end = [\n    -3.0,\n    -2.5,"), ["zero length"]),
+        (FURNISHED.replace("-1.5,\n    -1.0,", "-1.6,\n    2.2,"), ["odour source 0", "inside a wall"]),
+    ],
+    ids=["broken", "empty", "unknown key", "wall of zero length", "source inside a box"],
+)
+def test_a_bad_room_is_told_in_one_line(run, tmp_path: Path, text: str, words: list[str]) -> None:
+    file = tmp_path / "room.toml"
+    file.write_text(text, encoding="utf-8")
+    for command in (
+        ("arena", file),
+        ("explore", file, "--out", tmp_path / "x"),
+        ("demo", "--arena", file, "--out", tmp_path / "x"),
+    ):
+        refused(run(*command), *words)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["room.toml"]
+
+
+def test_a_room_without_free_space_is_refused(run, tmp_path: Path) -> None:
+    file = tmp_path / "room.toml"
+    tight = Arena.load("furnished").model_copy(update={"platform": (((0, 0), (0.3, 0), (0.3, 3), (0, 3)),)})
+    file.write_text(tight.to_toml(), encoding="utf-8")
+    refused(run("demo", "--arena", file, "--out", tmp_path / "x"), "no free space")
+    refused(run("explore", file, "--out", tmp_path / "x"), "no free space")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["room.toml"]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["demo", "--views", 0], "views is 0"),
+        (["demo", "--views", -5], "views is -5"),
+        (["demo", "--charts", 0, "--views", 30], "charts is 0"),
+        (["demo", "--views", "many"], "many"),
+        (["demo", "--arena", "ballroom"], "ballroom"),
+        (["demo", "--arena", "nowhere.toml"], "nowhere.toml"),
+        (["explore", "furnished", "--views", 0], "views is 0"),
+        (["explore", "furnished", "--width", -1], "width"),
+        (["explore", "furnished", "--noise", "nan"], "noise"),
+        (["explore", "furnished", "--seed", -1], "seed"),
+        (["dance"], "dance"),
+        (["demo", "--sofa", 3], "sofa"),
+    ],
+)
+def test_bad_words_are_told_in_one_line(run, tmp_path: Path, words: list[object], said: str) -> None:
+    out = [] if words[0] == "dance" else ["--out", tmp_path / "out"]
+    refused(run(*words, *out), said)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("nothing.zarr", "nothing.zarr"),
+        ("junk.zarr", "junk.zarr"),
+        ("half.zarr", "half-written"),
+        ("map", "map"),
+    ],
+)
+def test_a_bad_recording_is_told_in_one_line(run, folder: Path, tmp_path: Path, name: str, said: str) -> None:
+    before = sorted(folder.rglob("*"))
+    refused(run("learn", folder / name, "--out", tmp_path / "map"), said)
+    refused(run("score", folder / "map", folder / name, "--train", folder / "walk.zarr"), said)
+    assert sorted(folder.rglob("*")) == before
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_does_not_fit_is_told_in_one_line(run, folder: Path, tmp_path: Path) -> None:
+    wide = tmp_path / "wide.zarr"
+    assert run("explore", "furnished", "--views", 20, "--out", wide)[0] == 0
+    refused(
+        run("score", folder / "map", wide, "--train", folder / "walk.zarr"), "camera the map was learnt with"
+    )
+    refused(run("score", folder / "map", folder / "blind.zarr", "--train", folder / "walk.zarr"), "no poses")
+    refused(run("explore", "pillar", "--views", 20, "--out", wide), "another recording")
+    refused(run("learn", folder / "walk.zarr", "--out", folder / "map"), "exists already")
+    refused(run("learn", folder / "blind.zarr", "--charts", 5000, "--out", tmp_path / "map"), "5000 charts")
+    refused(run("demo", "--views", 100, "--out", folder), "not the result")
+    assert np.asarray(Recording.open(wide).views[:]).shape == (20, 60, 360, 3)
+
+
+def test_help_gives_examples(run) -> None:
+    for command in ("demo", "arena", "explore", "learn", "score"):
+        status, out, _ = run(command, "--help")
+        assert status == 0
+        assert f"cogmap {command} " in " ".join(out.split())

@@ -1,0 +1,152 @@
+import inspect
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numba
+import numpy as np
+import pytest
+import torch
+
+from arena import Arena, Brownian, Camera, Recording, explore
+from cogmap import Activity, CogmapError, CognitiveMap, score
+from cogmap.layers import EPOCHS
+
+Grow = Callable[..., CognitiveMap]
+
+
+def same(a: CognitiveMap, b: CognitiveMap) -> bool:
+    one, other = a._layers.state_dict(), b._layers.state_dict()
+    return one.keys() == other.keys() and all(
+        torch.equal(one[name].nan_to_num(), other[name].nan_to_num()) for name in one
+    )
+
+
+def assert_same(a: Activity, b: Activity) -> None:
+    for name in ("place", "heading", "phase", "odour"):
+        np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
+
+
+def test_poses_cannot_reach_learning(walk: Recording, grow: Grow, cmap: CognitiveMap) -> None:
+    rng = np.random.default_rng(7)
+    lied_to = replace(walk, poses=rng.permutation(walk.poses), times=walk.times[::-1].copy())
+    assert walk.without_truth().poses is None
+    assert same(cmap, grow(walk.without_truth()))
+    assert same(cmap, grow(lied_to))
+    for learn in (CognitiveMap.fit, CognitiveMap.partial_fit, CognitiveMap.perceive):
+        assert set(inspect.signature(learn).parameters) <= {"self", "views", "odours", "progress"}
+
+
+def test_one_thread_or_two_give_the_same_map(
+    walk: Recording, camera: Camera, grow: Grow, cmap: CognitiveMap
+) -> None:
+    threads, cast = torch.get_num_threads(), numba.get_num_threads()
+    grown = []
+    for count in (1, 2):
+        torch.set_num_threads(count)
+        numba.set_num_threads(min(count, numba.config.NUMBA_NUM_THREADS))
+        seen = explore(Arena.load("furnished"), Brownian(), camera, views=len(walk), seed=0)
+        np.testing.assert_array_equal(seen.views, walk.views)
+        grown.append(grow(seen))
+        assert torch.get_num_threads() == count
+    torch.set_num_threads(threads)
+    numba.set_num_threads(cast)
+    assert same(*grown)
+    assert same(grown[0], cmap)
+
+
+def test_another_seed_gives_another_map(walk: Recording, grow: Grow, cmap: CognitiveMap) -> None:
+    assert not same(cmap, grow(walk, seed=1))
+
+
+def test_fit_is_epochs_of_partial_fit(walk: Recording, cmap: CognitiveMap) -> None:
+    streamed = CognitiveMap(charts=cmap.charts, components=cmap.components, epoch=len(walk), seed=0)
+    order = np.random.default_rng(0)
+    for _ in range(sum(EPOCHS.values())):
+        rows = order.permutation(len(walk))
+        streamed.partial_fit(walk.views[rows], walk.odours[rows])
+    assert streamed.trusted_ == cmap.trusted_
+    some = slice(0, 200)
+    a, b = streamed.perceive(walk.views[some]), cmap.perceive(walk.views[some])
+    np.testing.assert_allclose(a.odour, b.odour, atol=1e-3)
+    np.testing.assert_allclose(np.exp(1j * a.phase), np.exp(1j * b.phase), atol=1e-3)
+
+
+def test_small_map_knows_place_and_heading(walk: Recording, camera: Camera, cmap: CognitiveMap) -> None:
+    fresh = explore(Arena.load("furnished"), Brownian(), camera, views=600, seed=1000)
+    found = score(cmap.perceive(fresh.views), fresh.poses, train=(cmap.perceive(walk.views), walk.poses))
+    assert cmap.trusted_, cmap.reason_
+    assert found["heading_resultant"] > 0.98
+    assert found["position_median_m"] < 0.15
+
+
+def test_saved_and_loaded_map_perceives_the_same_bits(
+    walk: Recording, cmap: CognitiveMap, tmp_path: Path
+) -> None:
+    cmap.save(tmp_path / "map")
+    loaded = CognitiveMap.load(tmp_path / "map")
+    assert_same(loaded.perceive(walk.views[:300]), cmap.perceive(walk.views[:300]))
+    assert_same(loaded.perceive(odours=walk.odours), cmap.perceive(odours=walk.odours))
+    assert loaded.trusted_ == cmap.trusted_
+    with pytest.raises(CogmapError, match="exists already"):
+        cmap.save(tmp_path / "map")
+
+
+def test_a_view_is_perceived_alike_in_any_company(walk: Recording, cmap: CognitiveMap) -> None:
+    together = cmap.perceive(walk.views[:300])
+    alone = cmap.perceive(walk.views[299:300])
+    np.testing.assert_allclose(together.odour[299:], alone.odour, atol=1e-4)
+    np.testing.assert_allclose(together.place[299:], alone.place, atol=1e-3)
+
+
+def test_in_the_dark_there_is_place_only(walk: Recording, cmap: CognitiveMap) -> None:
+    dark = cmap.perceive(odours=walk.odours)
+    assert np.isnan(dark.phase).all()
+    assert np.isnan(dark.heading).all()
+    np.testing.assert_array_equal(dark.odour, np.log(walk.odours))
+    quiet = cmap.perceive(odours=np.exp(cmap.perceive(walk.views).odour))
+    agreement = [np.corrcoef(a.place.ravel(), cmap.perceive(walk.views).place.ravel())[0, 1] for a in (dark, quiet)]
+    assert 0.3 < agreement[0] < agreement[1]
+    assert agreement[1] > 0.5
+
+
+def test_a_coarse_map_says_so(walk: Recording) -> None:
+    coarse = CognitiveMap(charts=20, components=10).fit(walk.views, walk.odours)
+    assert not coarse.trusted_
+    assert "chart" in coarse.reason_
+    with pytest.warns(UserWarning, match="not to be trusted"):
+        coarse.perceive(walk.views[:5])
+
+
+def test_an_unfinished_map_says_so(walk: Recording) -> None:
+    young = CognitiveMap(charts=300, epoch=1500).partial_fit(walk.views[:500], walk.odours[:500])
+    assert not young.trusted_
+    assert "'code' stage" in young.reason_
+
+
+def test_bad_input_is_refused(walk: Recording, cmap: CognitiveMap) -> None:
+    views, odours = walk.views[:400], walk.odours[:400]
+    broken = odours.copy()
+    broken[7, 1] = np.nan
+    for give, sentence in [
+        ((views.astype(np.float32), odours), "uint8"),
+        ((views[0], odours), "shape"),
+        ((views[:0], odours[:0]), "no views"),
+        ((views, broken), "odours of view 7"),
+        ((views, -odours), "above 0"),
+        ((views, odours[:-1]), "400 views but 399 odours"),
+        ((views[:100], odours[:100]), "100 views for 300 charts"),
+    ]:
+        with pytest.raises(CogmapError, match=sentence):
+            CognitiveMap(charts=300).fit(*give)
+    for count in ({"charts": 0}, {"components": -1}, {"place_cells": 0}, {"heading_cells": 0}, {"seed": -1}):
+        with pytest.raises(CogmapError, match=next(iter(count))):
+            CognitiveMap(**{"charts": 300, **count}).fit(views, odours)
+    with pytest.raises(CogmapError, match="camera the map was learnt with"):
+        cmap.perceive(np.zeros((2, 60, 360, 3), np.uint8))
+    with pytest.raises(CogmapError, match="odorants"):
+        cmap.perceive(odours=odours[:, :2])
+    with pytest.raises(CogmapError, match="either"):
+        cmap.perceive()
+    with pytest.raises(CogmapError, match="learnt nothing"):
+        CognitiveMap().perceive(views)

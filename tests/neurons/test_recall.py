@@ -1,0 +1,90 @@
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import torch
+from torch import Tensor
+
+from neurons.atlas import Atlas
+from neurons.charts import Charts
+from neurons.recall import BREADTH, Recall
+from neurons.synchronisation import Compass
+
+SLOPES = torch.tensor([[1.0, -0.5, 2.0], [0.3, 1.5, -1.0]])
+OFFSETS = torch.tensor([0.5, -2.0, 1.0])
+Tiling = tuple[Tensor, Charts]
+
+
+def smell(pose: Tensor) -> Tensor:
+    return OFFSETS + pose[:, :2] @ SLOPES
+
+
+@pytest.fixture(scope="module")
+def compass(tiling: Tiling, turning: Callable[[Tensor], Tensor], radius: float) -> Compass:
+    pose, _ = tiling
+    return Compass(turning(pose), 1 / radius, pose[:, 2], sign_agreement=1.0, eigenvalue=1.0)
+
+
+@pytest.fixture(scope="module")
+def settled(tiling: Tiling) -> Callable[[Compass | None], Recall]:
+    pose, charts = tiling
+
+    def settle(compass: Compass | None) -> Recall:
+        jacobians = charts.tangents[:, :, :2] @ SLOPES
+        recall = Recall(len(charts), 4, 3)
+        recall.settle(Atlas.of(charts.centres), compass, smell(pose), jacobians)
+        return recall
+
+    return settle
+
+
+@pytest.fixture(scope="module")
+def unseen(poses: Callable[[int, int], Tensor]) -> Tensor:
+    return poses(500, 9)
+
+
+def test_heading_and_odour_of_codes_held_out(
+    tiling: Tiling,
+    settled: Callable[[Compass | None], Recall],
+    compass: Compass,
+    unseen: Tensor,
+    cylinder: Callable[[Tensor], Tensor],
+) -> None:
+    _, charts = tiling
+    recall, codes = settled(compass), cylinder(unseen)
+    heading, odour = recall(charts, codes, recall.excite(charts, codes))
+    error = torch.angle(torch.exp(1j * (heading - unseen[:, 2]))).rad2deg().abs()
+    assert error.median() < 0.5
+    assert error.max() < 3
+    assert heading.abs().max() <= torch.pi
+    torch.testing.assert_close(odour, smell(unseen), atol=1e-4, rtol=0)
+
+
+def test_weights_are_gaussian_in_distance(
+    tiling: Tiling,
+    settled: Callable[[Compass | None], Recall],
+    unseen: Tensor,
+    cylinder: Callable[[Tensor], Tensor],
+) -> None:
+    _, charts = tiling
+    recall, codes = settled(None), cylinder(unseen)
+    chart, weight = recall.excite(charts, codes)
+    torch.testing.assert_close(weight.sum(dim=1), torch.ones(len(codes)))
+    assert chart.shape == (500, 8)
+    distance = torch.cdist(codes.double(), charts.centres.double()).gather(1, chart).numpy()
+    width = BREADTH * Atlas.of(charts.centres).spacing.double().numpy()[chart.numpy()]
+    activity = np.exp(-(distance**2) / (2 * width**2))
+    np.testing.assert_allclose(weight, activity / activity.sum(axis=1, keepdims=True), atol=1e-4)
+
+
+def test_no_compass_no_heading(
+    tiling: Tiling,
+    settled: Callable[[Compass | None], Recall],
+    unseen: Tensor,
+    cylinder: Callable[[Tensor], Tensor],
+) -> None:
+    _, charts = tiling
+    recall, codes = settled(None), cylinder(unseen)
+    heading, odour = recall(charts, codes, recall.excite(charts, codes))
+    assert heading.isnan().all()
+    torch.testing.assert_close(odour, smell(unseen), atol=1e-4, rtol=0)
