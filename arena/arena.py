@@ -14,6 +14,7 @@ import shapely
 import tomli_w
 from jaxtyping import Bool, Float, Int
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+from shapely.geometry.base import BaseGeometry
 
 from arena.errors import ArenaError
 from arena.materials import MATERIALS
@@ -74,7 +75,8 @@ class Box(_Part):
         angle = np.deg2rad(self.angle_deg)
         corners = 0.5 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * self.size
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        return corners @ turn + self.center
+        outline: np.ndarray = corners @ turn + self.center
+        return outline
 
 
 class Pillar(_Part):
@@ -227,9 +229,10 @@ class Arena(_Part):
         x0, y0, x1, y1 = shapely.union_all([self._obstacles, self._walkable]).bounds
         return float(x0), float(y0), float(x1), float(y1)
 
-    def free_space(self, radius: float) -> shapely.Geometry:
+    def free_space(self, radius: float) -> BaseGeometry:
         """Where the centre of a disc of this radius (m) can be, as a shapely geometry."""
-        return self._walkable.buffer(-radius) - self._obstacles.buffer(radius)
+        region: BaseGeometry = self._walkable.buffer(-radius) - self._obstacles.buffer(radius)
+        return region
 
     def is_free(self, xy: Float[np.ndarray, "points 2"], radius: float) -> Bool[np.ndarray, "points"]:
         """Whether a disc of this radius (m) centred at each point (m) touches nothing."""
@@ -277,7 +280,9 @@ class Arena(_Part):
     @cached_property
     def surfaces(self) -> Surfaces:
         """Every vertical face, for the eye."""
-        outlines = [(np.array([wall.start, wall.end]), wall, False) for wall in self.walls]
+        outlines: list[tuple[np.ndarray, Wall | Box | Pillar, bool]] = [
+            (np.array([wall.start, wall.end]), wall, False) for wall in self.walls
+        ]
         outlines += [(np.vstack([solid.outline, solid.outline[:1]]), solid, True) for solid in self._solids]
         names = tuple(sorted({part.material for _, part, _ in outlines}))
         faces = [len(corners) - 1 for corners, _, _ in outlines]
@@ -297,16 +302,16 @@ class Arena(_Part):
         return (*self.boxes, *self.pillars)
 
     @cached_property
-    def _walkable(self) -> shapely.Geometry:
+    def _walkable(self) -> BaseGeometry:
         return shapely.union_all([shapely.Polygon(corners) for corners in self.platform])
 
     @cached_property
-    def _obstacles(self) -> shapely.Geometry:
+    def _obstacles(self) -> BaseGeometry:
         walls = [shapely.LineString([wall.start, wall.end]) for wall in self.walls]
         return shapely.union_all(walls + [shapely.Polygon(solid.outline) for solid in self._solids])
 
 
 def gallery() -> list[str]:
-    """The names of the rooms that come with the package."""
+    """Give the names of the rooms that come with the package."""
     folder = resources.files("arena") / "gallery"
     return sorted(file.name.removesuffix(".toml") for file in folder.iterdir() if file.name.endswith(".toml"))

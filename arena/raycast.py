@@ -239,7 +239,7 @@ def _unroll(along: tuple, up: tuple, m: int, paints: Paints, strip: np.ndarray) 
     """Fill `strip` with the running sums of material m, averaged along a stretch of wall (texels)."""
     sums, mean = paints.sums, paints.mean
     u0, u1 = min(along), max(along)
-    if u1 - u0 < 1.0:  # averaging over one texel at least is linear interpolation when magnified
+    if u1 - u0 < 1.0:  # an average over one texel, which is linear interpolation
         u0, u1 = 0.5 * (u0 + u1) - 0.5, 0.5 * (u0 + u1) + 0.5
     tile, rise = TILE
     i0, i1 = int(np.floor(u0)), int(np.floor(u1))
@@ -300,11 +300,10 @@ def _paint_wall(rows: tuple, weight: float, texels: tuple, strip: np.ndarray, co
     l0, l1, l2 = _read(strip, v - bottom * step)
     for r in range(int(np.ceil(bottom)) - 1, int(top) - 1, -1):
         above, below = max(float(r), top), min(r + 1.0, bottom)
-        if step < 1.0:
+        if step < 1.0:  # an average over one texel, which is linear interpolation
             middle = v - 0.5 * (above + below) * step
-            low = max(middle - 0.5, 0.0)
-            share = np.float32(weight * (below - above) / (middle + 0.5 - low))
-            l0, l1, l2 = _read(strip, low)
+            share = np.float32(weight * (below - above))
+            l0, l1, l2 = _read(strip, middle - 0.5)
             h0, h1, h2 = _read(strip, middle + 0.5)
         else:
             h0, h1, h2 = _read(strip, v - above * step)

@@ -19,6 +19,7 @@ from neurons.retina import Retina
 
 REPEATS = 3
 ROOM = Arena.load("furnished")
+CAMERAS = {"panoramic_360x60": Camera.panoramic(), "perspective_320x240": Camera.perspective()}
 
 
 def seconds(work: Callable[[], object]) -> float:
@@ -42,7 +43,7 @@ def rendering() -> dict[str, float]:
     """Frames per second on one core, and as a fraction of the rate at which memory copies the same images."""
     numba.set_num_threads(1)
     figures = {}
-    for name, camera in {"panoramic_360x60": Camera.panoramic(), "perspective_320x240": Camera.perspective()}.items():
+    for name, camera in CAMERAS.items():
         where = poses(500)
         images = camera.render(ROOM, where)
         drawn = seconds(lambda camera=camera, where=where: camera.render(ROOM, where))
@@ -70,7 +71,7 @@ def depth() -> dict[str, float]:
 
 
 def code() -> dict[str, float]:
-    """Time to 99 % of the variance that 60 components can capture, scikit-learn's IncrementalPCA over Sanger."""
+    """Time to 99 % of the variance that 60 components can capture, IncrementalPCA's over Sanger's."""
     with one_thread():
         strips = Retina(60, 360)(torch.from_numpy(Camera.panoramic().render(ROOM, poses(4000))))
         centred = strips - strips.mean(dim=0)

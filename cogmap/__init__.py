@@ -7,4 +7,4 @@ from cogmap.errors import CogmapError
 from cogmap.manifold.homology import Betti, betti
 from cogmap.scoring import score
 
-__all__ = ["Activity", "Betti", "CognitiveMap", "CogmapError", "betti", "cells", "plots", "score"]
+__all__ = ["Activity", "Betti", "CogmapError", "CognitiveMap", "betti", "cells", "plots", "score"]

@@ -15,8 +15,8 @@ class Activity:
     place, heading
         Rates of place cells and head-direction cells, Hz.
     phase
-        Heading in the map's own frame, rad in (−π, π]: an unknown rotation, possibly a mirror, of the true one. NaN in the
-        dark and without a compass.
+        Heading in the map's own frame, rad in (−π, π]: an unknown rotation, possibly a mirror, of the true
+        one. NaN in the dark and without a compass.
     odour
         Log concentration of each odorant, recalled from sight.
     """

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import warnings
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,7 +15,6 @@ from arena import Arena, ArenaError, Body, Brownian, Camera, Nose, Recording, ex
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.experiments.demo import demo
-from cogmap.experiments.outputs import check_replaceable
 from cogmap.plots import plot_room
 from cogmap.scoring import score
 from cogmap.tables import as_table
@@ -57,7 +55,7 @@ def _demo(
 ) -> None:
     """Explore a room, learn from sight and smell, and show the cells that emerge.
 
-    Examples: `cogmap demo`; `cogmap demo --arena pillar --seed 1 --json`; `cogmap demo --views 3000 --out small`.
+    Examples: `cogmap demo`; `cogmap demo --arena pillar --seed 1 --out pillar --json`.
 
     Parameters
     ----------
@@ -122,7 +120,7 @@ def _explore(
 ) -> None:
     """Walk through a room and record what is seen and smelt; a killed exploration goes on when called again.
 
-    Examples: `cogmap explore furnished --out walk.zarr`; `cogmap explore pillar --views 5000 --seed 1000 --out fresh.zarr`.
+    Examples: `cogmap explore furnished --out walk.zarr`; `cogmap explore pillar --views 5000 --out p.zarr`.
 
     Parameters
     ----------

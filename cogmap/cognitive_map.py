@@ -30,8 +30,9 @@ BATCH = 256
 class CognitiveMap:
     """A map of a place, learnt from sight and smell alone.
 
-    It is given images and concentrations, in any order, and nothing else: no poses, no motor signals, no time. Afterwards
-    sight alone tells the recalled smell (hence place) and the heading, through place cells and head-direction cells.
+    It is given images and concentrations, in any order, and nothing else: no poses, no motor signals, no
+    time. Afterwards sight alone tells the recalled smell (hence place) and the heading, through place cells
+    and head-direction cells.
 
     Parameters
     ----------
@@ -42,7 +43,8 @@ class CognitiveMap:
     place_cells, heading_cells
         Sizes of the two populations.
     epoch
-        Views per epoch when learning from a stream with `partial_fit`; `fit` sets it to the views it is given.
+        Views per epoch when learning from a stream with `partial_fit`; `fit` sets it to the views it is
+        given.
     seed
         Of the initial weights and the order of views; the same seed gives the same bits.
 
@@ -118,7 +120,8 @@ class CognitiveMap:
     def partial_fit(self, views: Any, odours: ArrayLike) -> CognitiveMap:
         """Learn from the next views of a stream.
 
-        Time and memory per view do not depend on how many came before. See `cogmap.layers.Layers` for what is learnt when.
+        Time and memory per view do not depend on how many came before. See `cogmap.layers.Layers` for what is
+        learnt when.
         """
         fresh = not hasattr(self, "_layers")
         check_views(views, None if fresh else self.view_shape_)
@@ -154,7 +157,7 @@ class CognitiveMap:
         return Activity(place, heading, phase, odour)
 
     def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
-        """Give the principal components of views, the space that the charts tile: the view manifold, float32."""
+        """Give the principal components of views, the space of the view manifold, float32."""
         self._check_grown()
         check_views(views, self.view_shape_)
         with one_thread():

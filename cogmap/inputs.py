@@ -15,7 +15,7 @@ def checked_count(name: str, value: object, least: int = 1) -> int:
 
 
 def check_views(views: object, shape: tuple[int, ...] | None = None) -> None:
-    """Raise unless `views` is (views, height, width, 3) uint8, and of the (height, width, 3) that a map was fitted to."""
+    """Raise unless `views` are uint8 images (views, height, width, 3), of `shape` when it is given."""
     found, dtype = getattr(views, "shape", None), getattr(views, "dtype", None)
     if found is None or len(found) != 4 or found[3] != 3 or dtype != np.uint8:
         what = type(views).__name__ if found is None else f"{dtype} of shape {tuple(found)}"

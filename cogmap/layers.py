@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from contextlib import suppress
+
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
@@ -31,9 +34,10 @@ EIGENVALUE = 0.993
 class Layers(nn.Module):
     """Sanger code, charts, olfaction, recall and the two populations, maturing one after the other.
 
-    Each layer learns during its own critical period, and those before it are then fixed: first the code, then the charts;
-    then each chart learns how smell changes across it; then the charts agree on a compass, the cells share out what is
-    recalled, and at last their afferents from sight are learnt. From the third stage on, all that is learnt are sums.
+    Each layer learns during its own critical period, and those before it are then fixed: first the code, then
+    the charts; then each chart learns how smell changes across it; then the charts agree on a compass, the
+    cells share out what is recalled, and at last their afferents from sight are learnt. From the third stage
+    on, all that is learnt are sums.
 
     Parameters
     ----------
@@ -74,7 +78,6 @@ class Layers(nn.Module):
         self.register_buffer("age", torch.zeros((), dtype=torch.int64))
         self.register_buffer("matured", torch.zeros((), dtype=torch.int64))
         self.register_buffer("agreement", torch.full((2,), torch.nan))
-        self.complaint = ""
 
     @property
     def stage(self) -> str:
@@ -120,13 +123,15 @@ class Layers(nn.Module):
         if self.stage != STAGES[-1]:
             return f"it is still in its {self.stage!r} stage; show it more views"
         signs, phases = self.agreement.tolist()
-        if not phases >= EIGENVALUE:
+        if not math.isfinite(phases):
+            return "no loop of its charts closes after a turn; use more charts or more views"
+        if phases < EIGENVALUE:
             return (
                 f"the phases of its charts agree only to {phases:.4f}, below {EIGENVALUE}: "
                 "the atlas is too coarse; use more charts"
             )
         if signs < 0.99:
-            return f"the heading axes of its charts agree only to {signs:.3f}; use more charts or more odour sources"
+            return f"its heading axes agree only to {signs:.3f}; use more charts or more odour sources"
         return ""
 
     def _winners(self) -> int:
@@ -134,7 +139,7 @@ class Layers(nn.Module):
         begun = EPOCHS["code"] * self.epoch
         share = min(1.0, max(0.0, (int(self.age) - begun) / (EPOCHS["charts"] * self.epoch)))
         first, last = WINNERS
-        return round(first * (last / first) ** share)
+        return round(float(first * (last / first) ** share))
 
     def _mature(self, stage: str) -> None:
         """Fix what came before `stage`, once."""
@@ -151,10 +156,8 @@ class Layers(nn.Module):
         atlas = Atlas.of(self.charts.centres)
         intercepts, jacobians = self.olfaction.solve()
         axes = heading_axes(self.charts.tangents, jacobians, atlas)
-        try:
+        compass = None
+        with suppress(NeuronsError):  # no ring closes: `agreement` stays NaN, which `complain` tells
             compass = synchronise(self.charts.centres, axes, atlas)
-        except NeuronsError as error:
-            compass, self.complaint = None, str(error)
-        else:
             self.agreement = torch.tensor([compass.sign_agreement, compass.eigenvalue])
         self.recall.settle(atlas, compass, intercepts, jacobians)

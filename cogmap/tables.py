@@ -9,7 +9,7 @@ UNITS = {"_m": "m", "_deg": "°", "_bytes": "bytes"}
 
 
 def as_table(metrics: Mapping[str, Any]) -> str:
-    """Lay out a flat or nested record as lines of name, value and unit; names of nested records are joined by dots."""
+    """Lay out a record as lines of name, value and unit; names of nested records are joined by dots."""
     flat: dict[str, Any] = {}
     for name, value in metrics.items():
         if isinstance(value, Mapping):

@@ -16,7 +16,7 @@ def assert_betti(
     metric: Metric = "geodesic",
     *,
     seed: int = 0,
-    **options: Any,  # noqa: ANN401
+    **options: Any,
 ) -> None:
     """Assert that a cloud has these Betti numbers, as many as are given.
 

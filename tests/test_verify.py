@@ -38,7 +38,9 @@ SECONDS, BYTES = 120, 4 * 1024**3
 @pytest.mark.parametrize("room", ROOMS)
 def test_main_job(room: str, seed: int, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "cogmap", "demo", "--arena", room, "--seed", str(seed)]
-    run = subprocess.run([*command, "--out", tmp_path / "demo", "--json"], capture_output=True, text=True, check=True)
+    run = subprocess.run(
+        [*command, "--out", tmp_path / "demo", "--json"], capture_output=True, text=True, check=True
+    )
     found, bars = json.loads(run.stdout), ROOMS[room]
     total = sum(value for value in found["seconds"].values() if isinstance(value, float))
     lines = [(key, found[key], "≥", bar) for key, bar in bars["least"].items()]

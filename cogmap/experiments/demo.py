@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tqdm import tqdm
+from jaxtyping import Float
 
-from arena import Arena, Body, Brownian, Camera, Nose, Recording, explore
+from arena import Arena, Body, Brownian, Camera, Recording, explore
 from cogmap.activity import Activity
 from cogmap.cells import (
     fit_heading_frame,
@@ -28,6 +28,7 @@ from cogmap.cells import (
 )
 from cogmap.cells.decoding import decode_positions
 from cogmap.cognitive_map import CognitiveMap
+from cogmap.errors import CogmapError
 from cogmap.experiments.homologies import homologies
 from cogmap.experiments.outputs import METRICS, result_folder
 from cogmap.inputs import checked_count
@@ -63,6 +64,15 @@ class Stopwatch:
         self.seconds[stage] = round(time.perf_counter() - started, 3)
 
 
+@dataclass(frozen=True)
+class Outing:
+    """A walk, where it really led, and what a map perceives on it."""
+
+    walk: Recording
+    poses: Float[np.ndarray, "views 3"]
+    activity: Activity
+
+
 def demo(
     room: Arena,
     out: Path | None,
@@ -80,7 +90,8 @@ def demo(
     room
         Where to explore.
     out
-        Folder for the figures, the map and `metrics.json`; an earlier result there is replaced at the end. None draws nothing.
+        Folder for the figures, the map and `metrics.json`; an earlier result there is replaced at the end.
+        None draws nothing.
     views
         Views to learn from.
     charts
@@ -100,33 +111,33 @@ def demo(
     Raises
     ------
     ArenaError, CogmapError
-        For a room or counts that cannot work, or a folder that holds something else.
+        For a room or counts that cannot work, a folder that holds something else, or a map without a compass.
     """
     checked_count("views", views, 20)
     charts = min(3000, views // 3) if charts is None else charts
+    clock = Stopwatch()
     with nullcontext() if out is None else result_folder(out) as folder:
-        clock = Stopwatch()
-        camera, nose = Camera.panoramic(), Nose()
-
-        def walk(count: int, number: int) -> Recording:
-            return explore(room, Brownian(), camera, nose=nose, views=count, seed=number, progress=progress)
-
         with clock("explore"):
-            learnt, fresh = walk(views, seed), walk(min(views, FRESH), seed + FRESH_SEED)
-        truth, fresh_truth = _poses(learnt), _poses(fresh)
+            walks = [
+                explore(room, Brownian(), Camera.panoramic(), views=count, seed=number, progress=progress)
+                for count, number in ((views, seed), (min(views, FRESH), seed + FRESH_SEED))
+            ]
+        cmap = CognitiveMap(charts=charts, seed=seed)
         with clock("learn"):
-            cmap = CognitiveMap(charts=charts, seed=seed).fit(learnt.views, learnt.odours, progress=progress)
+            cmap.fit(walks[0].views, walks[0].odours, progress=progress)
+        if not np.isfinite(cmap.phase_eigenvalue_):
+            raise CogmapError(f"the map has no compass: {cmap.reason_}")
         with clock("perceive"):
-            before, after = cmap.perceive(learnt.views), cmap.perceive(fresh.views)
+            learnt, fresh = (Outing(walk, _poses(walk), cmap.perceive(walk.views)) for walk in walks)
         with clock("score"):
-            reachable = room.sample_free(20_000, Body().radius, np.random.default_rng(0))
-            figures = score(after, fresh_truth, train=(before, truth), reachable=reachable)
-            nose_error = position_errors(
-                np.log(learnt.odours), truth[:, :2], np.log(fresh.odours), fresh_truth[:, :2]
-            )
+            figures = _score(room, learnt, fresh)
         with clock("homology"):
-            bars = homologies(cmap.encode(learnt.views), before, landmarks=landmarks, seed=seed)
-        metrics: dict[str, Any] = {
+            bars = homologies(cmap.encode(learnt.walk.views), learnt.activity, landmarks=landmarks, seed=seed)
+        if folder is not None:
+            with clock("figures"):
+                _draw(folder, room, learnt, fresh, bars)
+                cmap.save(folder / "map")
+        metrics = {
             "arena": room.name,
             "seed": seed,
             "views": views,
@@ -134,61 +145,57 @@ def demo(
             "trusted": cmap.trusted_,
             "reason": cmap.reason_,
             **figures,
-            "nose_position_median_m": float(np.median(nose_error)),
-            "nose_position_p95_m": float(np.percentile(nose_error, 95)),
             **{f"betti_{name}": list(found.numbers) for name, found in bars.items()},
             "betti_votes": {name: list(found.votes) for name, found in bars.items()},
             "phase_eigenvalue": cmap.phase_eigenvalue_,
+            "seconds": clock.seconds,
+            "learn_seconds": {stage: round(spent, 3) for stage, spent in cmap.seconds_.items()},
+            "peak_memory_bytes": _peak_memory(),
         }
-        if folder is not None:
-            with clock("figures"):
-                _draw(folder, room, learnt, fresh, before, after, bars, progress=progress)
-                cmap.save(folder / "map")
-        metrics["seconds"] = {
-            **clock.seconds,
-            "learn_by_stage": {k: round(v, 3) for k, v in cmap.seconds_.items()},
-        }
-        metrics["peak_memory_bytes"] = _peak_memory()
         if folder is not None:
             (folder / METRICS).write_text(json.dumps(metrics, indent=2) + "\n", encoding="utf-8")
         return metrics
 
 
-def _draw(
-    folder: Path,
-    room: Arena,
-    learnt: Recording,
-    fresh: Recording,
-    before: Activity,
-    after: Activity,
-    bars: dict[str, Betti],
-    *,
-    progress: bool,
-) -> None:
-    """Write the figures."""
-    truth, fresh_truth = _poses(learnt), _poses(fresh)
-    positions, headings = fresh_truth[:, :2], fresh_truth[:, 2]
-    frame = fit_heading_frame(before.phase, truth[:, 2])
-    aligned = headings + heading_errors(after.phase, headings, frame)
-    maps = rate_maps(after.place, positions)
-    sheet = np.linspace(0, len(learnt) - 1, 18).astype(int)
-    drawings = {
-        "room": lambda: plot_room(room, truth),
-        "views": lambda: plot_views(np.asarray(learnt[sheet].views), truth[sheet]),
-        "place_cells": lambda: plot_rate_maps(maps, place_statistics(after.place, positions, headings)),
-        "heading_cells": lambda: plot_tuning_curves(
-            tuning_curves(after.heading, headings), heading_statistics(after.heading, positions, headings)
-        ),
-        "compass": lambda: plot_compass(aligned, headings, positions),
-        "position": lambda: plot_position(
-            decode_positions(before.odour, truth[:, :2], after.odour),
-            positions,
-            decode_positions(np.log(learnt.odours), truth[:, :2], np.log(fresh.odours)),
-        ),
-        "barcodes": lambda: plot_barcodes(bars),
+def _score(room: Arena, learnt: Outing, fresh: Outing) -> dict[str, float]:
+    """Every figure of `score`, and the position error of the raw nose read by the same decoder."""
+    reachable = room.sample_free(20_000, Body().radius, np.random.default_rng(0))
+    raw = position_errors(
+        np.log(learnt.walk.odours), learnt.poses[:, :2], np.log(fresh.walk.odours), fresh.poses[:, :2]
+    )
+    return {
+        **score(fresh.activity, fresh.poses, train=(learnt.activity, learnt.poses), reachable=reachable),
+        "nose_position_median_m": float(np.median(raw)),
+        "nose_position_p95_m": float(np.percentile(raw, 95)),
     }
-    for name, draw in tqdm(drawings.items(), unit="figure", disable=not progress):
-        draw().savefig(folder / f"{name}.png")
+
+
+def _draw(folder: Path, room: Arena, learnt: Outing, fresh: Outing, bars: dict[str, Betti]) -> None:
+    """Write the figures."""
+    positions, headings = fresh.poses[:, :2], fresh.poses[:, 2]
+    rates = fresh.activity
+    frame = fit_heading_frame(learnt.activity.phase, learnt.poses[:, 2])
+    aligned = headings + heading_errors(rates.phase, headings, frame)
+    sheet = np.linspace(0, len(learnt.walk) - 1, 18).astype(int)
+    known = learnt.poses[:, :2]
+    smelt = decode_positions(np.log(learnt.walk.odours), known, np.log(fresh.walk.odours))
+    drawings = {
+        "room": plot_room(room, learnt.poses),
+        "views": plot_views(np.asarray(learnt.walk[sheet].views), learnt.poses[sheet]),
+        "place_cells": plot_rate_maps(
+            rate_maps(rates.place, positions), place_statistics(rates.place, positions, headings)
+        ),
+        "heading_cells": plot_tuning_curves(
+            tuning_curves(rates.heading, headings), heading_statistics(rates.heading, positions, headings)
+        ),
+        "compass": plot_compass(aligned, headings, positions),
+        "position": plot_position(
+            decode_positions(learnt.activity.odour, known, rates.odour), positions, smelt
+        ),
+        "barcodes": plot_barcodes(bars),
+    }
+    for name, figure in drawings.items():
+        figure.savefig(folder / f"{name}.png")
 
 
 def _poses(recording: Recording) -> np.ndarray:

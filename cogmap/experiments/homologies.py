@@ -1,8 +1,8 @@
 """The shape of everything that a map knows: its views, its fusion, its two populations."""
 
 import numpy as np
-from joblib import Parallel, delayed
 from jaxtyping import Float
+from joblib import Parallel, delayed
 
 from cogmap.activity import Activity
 from cogmap.manifold.homology import Betti, betti
@@ -19,8 +19,9 @@ def homologies(
 ) -> dict[str, Betti]:
     """Betti numbers of the view manifold, the fused map and both populations.
 
-    The view manifold is the codes, the fused map (recalled log odour, cos φ, sin φ), a population the square roots of its
-    rates, whose Poisson noise is the same at every rate. Computed side by side in `JOBS` processes.
+    The view manifold is the codes, the fused map (recalled log odour, cos φ, sin φ), a population the square
+    roots of its rates, whose Poisson noise is the same at every rate. Computed side by side in `JOBS`
+    processes.
 
     References
     ----------

@@ -22,7 +22,7 @@ def check_replaceable(out: Path) -> None:
 
 @contextmanager
 def result_folder(out: Path) -> Iterator[Path]:
-    """Give a folder to fill, which takes the place of `out` at the end; what fails or is killed changes nothing.
+    """Give a folder to fill, which takes the place of `out` at the end; a failure changes nothing.
 
     Raises
     ------

@@ -105,7 +105,9 @@ def test_in_the_dark_there_is_place_only(walk: Recording, cmap: CognitiveMap) ->
     assert np.isnan(dark.heading).all()
     np.testing.assert_array_equal(dark.odour, np.log(walk.odours))
     quiet = cmap.perceive(odours=np.exp(cmap.perceive(walk.views).odour))
-    agreement = [np.corrcoef(a.place.ravel(), cmap.perceive(walk.views).place.ravel())[0, 1] for a in (dark, quiet)]
+    agreement = [
+        np.corrcoef(a.place.ravel(), cmap.perceive(walk.views).place.ravel())[0, 1] for a in (dark, quiet)
+    ]
     assert 0.3 < agreement[0] < agreement[1]
     assert agreement[1] > 0.5
 

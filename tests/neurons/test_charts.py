@@ -125,6 +125,25 @@ def test_second_rank_learns_with_weight_exp_minus_one() -> None:
     np.testing.assert_allclose(pair.centres[1], (6 - 4 * h) / (6 + 4 * h), rtol=1e-5)
 
 
+def test_ranks_share_sangers_rule(views: Tensor) -> None:
+    """One batch on drawn centres, view by view: variances start at nought, so U is the drive alone."""
+    layer = blank(6)
+    layer.partial_fit(views[:6], winners=3, memory=1e9)
+    before, codes = layer.tangents.double().numpy(), views[6:60]
+    centres = layer.centres.double().numpy().copy()
+    drive, mass = np.zeros_like(before), np.zeros(6)
+    for z in codes.double().numpy():
+        for rank, k in enumerate(np.argsort(np.linalg.norm(z - centres, axis=1))[:3]):
+            h, residual = np.exp(-2 * rank / 3), z - centres[k]
+            y = before[k] @ residual
+            drive[k] += h * (np.outer(y, residual) - np.tril(np.outer(y, y), -1) @ before[k])
+            mass[k] += h
+    layer.partial_fit(codes, winners=3, memory=1e9)
+    variances = np.linalg.norm(drive, axis=2) / mass[:, None]
+    np.testing.assert_allclose(layer.variances, variances, rtol=1e-3, atol=1e-6)
+    np.testing.assert_allclose(layer.tangents, drive / (variances * mass[:, None])[..., None], atol=1e-3)
+
+
 def test_nearest_same_as_scikit_learn(charts: Charts, views: Tensor) -> None:
     chart, squared = charts.excite(views[:200], 7)
     trusted = NearestNeighbors(n_neighbors=7).fit(charts.centres.double().numpy())

@@ -1,0 +1,29 @@
+"""What the README prints is run, at its own size."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_python_example_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    (example,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    exec(compile(example, "README.md", "exec"), {})  # noqa: S102
+    scores, numbers = capsys.readouterr().out.splitlines()
+    assert "heading_median_deg" in scores
+    assert numbers == "(1, 1, 0)"
+
+
+def test_every_command_and_picture_exists() -> None:
+    root = Path(__file__).parents[1]
+    for picture in re.findall(r"!\[.*?\]\((.*?)\)", README):
+        assert (root / picture).is_file()
+    makefile = (root / "Makefile").read_text(encoding="utf-8")
+    for target in re.findall(r"`?make (\w+)", README):
+        if target != "and":
+            assert f"\n{target}:" in makefile
+    cli = (root / "cogmap" / "cli.py").read_text(encoding="utf-8")
+    for command in re.findall(r"^cogmap (\w+)", README, re.MULTILINE):
+        assert f'name="{command}"' in cli
