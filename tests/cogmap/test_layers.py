@@ -1,0 +1,80 @@
+import pytest
+import torch
+
+from cogmap.layers import EPOCHS, STAGES, WINNERS, Layers
+
+EPOCH = 400
+
+
+@pytest.fixture
+def layers() -> Layers:
+    return Layers(
+        30,
+        3,
+        charts=60,
+        components=8,
+        place_cells=10,
+        heading_cells=6,
+        epoch=EPOCH,
+        generator=torch.Generator().manual_seed(0),
+    )
+
+
+def stream(count: int, seed: int) -> tuple[torch.Tensor, torch.Tensor]:
+    """Views of a cylinder in 30 dimensions, and smells that depend on where along and across it they are."""
+    rng = torch.Generator().manual_seed(seed)
+    place = 2 * torch.rand(count, 2, generator=rng) - 1
+    turn = 2 * torch.pi * torch.rand(count, generator=rng)
+    core = torch.column_stack([place, turn.cos(), turn.sin()])
+    mixing = torch.linalg.qr(torch.randn(30, 4, generator=torch.Generator().manual_seed(9))).Q
+    return core @ mixing.T, torch.column_stack([place, place.sum(dim=1)])
+
+
+def test_each_layer_learns_in_its_own_period_and_is_then_fixed(layers: Layers) -> None:
+    own = {
+        "code": "code.",
+        "charts": "charts.",
+        "olfaction": "olfaction.",
+        "cells": ("place.", "heading."),
+        "afferents": ("place.afferents.", "heading.afferents."),
+    }
+    for number, stage in enumerate(STAGES):
+        assert layers.stage == stage
+        layers.learn(*stream(50, number))  # what came before is settled with the first views of a stage
+        before = {name: value.clone() for name, value in layers.state_dict().items()}
+        for batch in range(EPOCHS[stage] * EPOCH // 50 - 1):
+            layers.learn(*stream(50, 100 * number + batch))
+        changed = {
+            name
+            for name, value in layers.state_dict().items()
+            if not torch.equal(value.nan_to_num(), before[name].nan_to_num())
+        }
+        assert changed - {"age"}
+        assert all(name.startswith(own[stage]) for name in changed - {"age"})
+
+
+def test_fewer_and_fewer_charts_learn_from_a_view(layers: Layers) -> None:
+    begun, lasts = EPOCHS["code"] * EPOCH, EPOCHS["charts"] * EPOCH
+    winners = []
+    for share in (0, 0.25, 0.5, 0.75, 1):
+        layers.age.fill_(begun + int(share * lasts))
+        winners.append(layers._winners())
+    assert (winners[0], winners[-1]) == WINNERS
+    assert winners == sorted(winners, reverse=True)
+
+
+@pytest.mark.parametrize(
+    ("signs", "phases", "said"),
+    [
+        (1.0, 0.9, "too coarse"),
+        (0.9, 0.9999, "heading axes"),
+        (torch.nan, torch.nan, "no loop"),
+        (1.0, 0.9999, ""),
+    ],
+)
+def test_complaints(layers: Layers, signs: float, phases: float, said: str) -> None:
+    layers.age.fill_(sum(EPOCHS.values()) * EPOCH)
+    layers.agreement = torch.tensor([signs, phases])
+    complaint = layers.complain()
+    assert said in complaint
+    assert bool(complaint) == bool(said)
