@@ -33,7 +33,7 @@ def test_tuning_same_as_scipys_von_mises() -> None:
         bell = vonmises(CONCENTRATION, loc=preferred)
         trusted = PEAK * bell.pdf(probes) / bell.pdf(preferred)
         np.testing.assert_allclose(layer.tuning(probes)[:, unit], trusted, atol=1e-3)
-    torch.testing.assert_close(layer.tuning(layer.preferred).diagonal(), torch.full((10,), PEAK))
+    torch.testing.assert_close(layer.tuning(layer.preferred).diagonal(), torch.full((10,), 20.0))
 
 
 def test_width_at_half_height() -> None:

@@ -31,8 +31,8 @@ def test_units_spread_over_the_smells() -> None:
 
 def test_peak_at_the_centre() -> None:
     layer = grown(60, smells(3000))
-    torch.testing.assert_close(layer.tuning(layer.centres).diagonal(), torch.full((60,), PEAK))
-    assert layer.tuning(smells(500, seed=1)).max() <= PEAK
+    torch.testing.assert_close(layer.tuning(layer.centres).diagonal(), torch.full((60,), 20.0))
+    assert layer.tuning(smells(500, seed=1)).max() <= 20
 
 
 def test_tuning_same_as_scipys_gaussian() -> None:
@@ -45,6 +45,15 @@ def test_tuning_same_as_scipys_gaussian() -> None:
         bell = multivariate_normal(layer.centres[unit].double().numpy(), covariance + flat * np.eye(2))
         trusted = PEAK * bell.pdf(probes.double().numpy()) / bell.pdf(bell.mean)
         np.testing.assert_allclose(rates[:, unit], trusted, atol=1e-3)
+
+
+def test_six_units_learn_from_one_smell() -> None:
+    odours = smells(31)
+    layer = PlaceCells(30, 1, 2)
+    layer.compete(odours, memory=100.0)
+    learnt = (layer.centres - odours[:30]).norm(dim=1).nonzero().flatten().tolist()
+    nearest = np.argsort(np.linalg.norm(odours[:30] - odours[30], axis=1))[:6]
+    assert learnt == sorted(nearest.tolist())
 
 
 def test_lone_unit_learns_mean_and_covariance() -> None:
