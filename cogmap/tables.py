@@ -35,6 +35,6 @@ def _shown(value: object) -> str:
 
 
 def _unit(name: str) -> str:
-    if name.startswith("seconds"):
+    if "seconds" in name:
         return "s"
     return next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")

@@ -3,6 +3,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import torch
+from scipy.optimize import minimize_scalar
 from torch import Tensor
 
 from neurons.atlas import Atlas
@@ -89,6 +90,32 @@ def test_sign_agreement_counts_frustrated_overlaps() -> None:
     trusted = product.sum() / np.abs(np.einsum("ec,ec->e", n[k], n[j])).sum()
     assert found.sign_agreement == pytest.approx(trusted, abs=1e-5)
     assert found.sign_agreement < 0.999
+
+
+def test_same_scale_as_dense_eigenvalues() -> None:
+    """An oval of uneven charts; λ(c) from numpy's dense solver, its maximum from scipy."""
+    angle = 2 * np.pi * np.sort(np.random.default_rng(0).uniform(size=120))
+    oval = np.column_stack([2 * np.cos(angle), np.sin(angle)])
+    n = np.column_stack([-2 * np.sin(angle), np.cos(angle)])
+    n /= np.linalg.norm(n, axis=1, keepdims=True)
+    centres = torch.from_numpy(oval).float()
+    atlas = Atlas.of(centres)
+    found = synchronise(centres, torch.from_numpy(n).float(), atlas)
+    overlap = np.zeros((120, 120))
+    overlap[tuple(atlas.edges.T.numpy())] = 1
+    overlap += overlap.T
+    degree = overlap.sum(axis=1)
+    omega = 0.5 * np.einsum("kjc,kjc->kj", oval[None] - oval[:, None], n[:, None] + n[None])
+
+    def disagreement(scale: float) -> float:
+        matrix = overlap * np.exp(-1j * scale * omega) / np.sqrt(np.outer(degree, degree))
+        return -float(np.linalg.eigvalsh(matrix)[-1])
+
+    best = minimize_scalar(disagreement, bounds=(0.9 * found.scale, 1.1 * found.scale), method="bounded")
+    assert found.scale == pytest.approx(best.x, rel=2e-3)
+    assert found.eigenvalue == pytest.approx(-best.fun, abs=1e-4)
+    length = np.linalg.norm(np.diff(oval, axis=0, append=oval[:1]), axis=1).sum()
+    assert found.scale == pytest.approx(2 * np.pi / length, rel=0.05)
 
 
 @pytest.mark.parametrize("bend", [0.05, 1.0])
