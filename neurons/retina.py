@@ -24,6 +24,10 @@ def _area_average(pixels: int, receptors: int) -> Float[Tensor, "receptors pixel
     return (overlap.clamp(min=0) * receptors / pixels).float()
 
 
+FAINTEST = 0.002
+"""Contrast in grey levels that is amplified no further: above the rounding of float32, far below any texture."""
+
+
 class Retina(nn.Module):
     """Centre-surround receptive fields along azimuth with divisive contrast normalisation.
 
@@ -100,6 +104,6 @@ class Retina(nn.Module):
         colours = rows.unflatten(2, (-1, 3)).transpose(2, 3).flatten(1, 2)
         strip = colours @ self.centre_surround
         contrast = (strip.square().mean(dim=1, keepdim=True) @ self.pooling).sqrt()
-        gain = contrast + self.floor * contrast.mean(dim=2, keepdim=True) + 1e-6
+        gain = contrast + self.floor * contrast.mean(dim=2, keepdim=True) + FAINTEST
         blurred: Tensor = strip / gain @ self.blur
         return blurred.flatten(1)

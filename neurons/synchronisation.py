@@ -22,6 +22,10 @@ SCALES = np.geomspace(0.03, 1.5, 80)
 """Scales tried, in rad per root-mean-square displacement along the axis."""
 
 
+LEAST_DIP = 1e-6
+"""How far the eigenvalue must have fallen before a maximum; less is rounding, as where nothing closes."""
+
+
 @dataclass(frozen=True)
 class Compass:
     """What the charts agree on.
@@ -118,7 +122,8 @@ def _close_ring(
     """Find the scale at which loops close after one turn; it, the eigenvalue there, and the phases."""
     tried = SCALES / np.sqrt(np.mean(omega**2))
     values = _coarse_eigenvalues(overlaps, omega, tried)
-    peaks = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    risen = values - np.minimum.accumulate(values) > LEAST_DIP
+    peaks = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:]) & risen[1:-1]) + 1
     if not len(peaks):
         raise NeuronsError("no loop of charts closes after a turn; use more charts or more views")
     best = peaks[0]

@@ -1,7 +1,8 @@
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
 import torch
+from threadpoolctl import threadpool_limits
 from torch import Tensor
 
 from neurons.charts import Charts
@@ -13,6 +14,13 @@ def _turning(pose: Tensor) -> Tensor:
     """Unit vectors of turning on the spot."""
     nought = torch.zeros(len(pose))
     return torch.stack([nought, nought, -pose[:, 2].sin(), pose[:, 2].cos()], dim=1)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def one_thread() -> Iterator[None]:
+    """As in production: small matrices only lose time on two threads."""
+    with threadpool_limits(limits=1):
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -94,14 +94,14 @@ def test_sign_agreement_counts_frustrated_overlaps() -> None:
 
 def test_same_scale_as_dense_eigenvalues() -> None:
     """An oval of uneven charts; λ(c) from numpy's dense solver, its maximum from scipy."""
-    angle = 2 * np.pi * np.sort(np.random.default_rng(0).uniform(size=120))
+    angle = 2 * np.pi * np.sort(np.random.default_rng(0).uniform(size=40))
     oval = np.column_stack([2 * np.cos(angle), np.sin(angle)])
     n = np.column_stack([-2 * np.sin(angle), np.cos(angle)])
     n /= np.linalg.norm(n, axis=1, keepdims=True)
     centres = torch.from_numpy(oval).float()
     atlas = Atlas.of(centres)
     found = synchronise(centres, torch.from_numpy(n).float(), atlas)
-    overlap = np.zeros((120, 120))
+    overlap = np.zeros((40, 40))
     overlap[tuple(atlas.edges.T.numpy())] = 1
     overlap += overlap.T
     degree = overlap.sum(axis=1)
@@ -113,14 +113,14 @@ def test_same_scale_as_dense_eigenvalues() -> None:
 
     best = minimize_scalar(disagreement, bounds=(0.9 * found.scale, 1.1 * found.scale), method="bounded")
     assert found.scale == pytest.approx(best.x, rel=2e-3)
-    assert found.eigenvalue == pytest.approx(-best.fun, abs=1e-4)
+    assert found.eigenvalue == pytest.approx(-best.fun, abs=1e-5)
     length = np.linalg.norm(np.diff(oval, axis=0, append=oval[:1]), axis=1).sum()
-    assert found.scale == pytest.approx(2 * np.pi / length, rel=0.05)
+    assert found.scale == pytest.approx(2 * np.pi / length, rel=0.15)
 
 
 @pytest.mark.parametrize("bend", [0.05, 1.0])
 def test_patch_without_a_loop(bend: float) -> None:
-    """The eigenvalue only falls along an arc; on an exactly straight patch it would be 1 at every scale."""
+    """The eigenvalue only falls along an arc."""
     x, y, angle = torch.rand(700, 3, generator=torch.Generator().manual_seed(4)).T * torch.tensor(
         [[1], [1], [bend]]
     )
@@ -131,10 +131,12 @@ def test_patch_without_a_loop(bend: float) -> None:
         synchronise(centres, with_random_signs(axes), Atlas.of(centres))
 
 
-def test_straight_patch_with_noisy_axes() -> None:
+@pytest.mark.parametrize("noise", [0.0, 0.1])
+def test_straight_patch(noise: float) -> None:
+    """Without noise the eigenvalue is 1 at every scale, give or take rounding."""
     generator = torch.Generator().manual_seed(5)
     centres = torch.rand(700, 3, generator=generator)
-    axes = torch.tensor([0.0, 0.0, 1.0]) + 0.1 * torch.randn(700, 3, generator=generator)
+    axes = torch.tensor([0.0, 0.0, 1.0]) + noise * torch.randn(700, 3, generator=generator)
     with pytest.raises(NeuronsError, match="no loop of charts"):
         synchronise(centres, axes / axes.norm(dim=1, keepdim=True), Atlas.of(centres))
 

@@ -42,7 +42,7 @@ def test_fresh_cubes_rarely_deceive(dimension: int, cube: int) -> None:
         null.largest_ratios("geodesic", cube, 800, [(dimension, 100)], rng=np.random.default_rng([1, seed]))
         for seed in range(40)
     ]
-    # 5 % or 1 % of 40, over a limit itself estimated from 100 cubes: 8 are a beta-binomial chance of 1 in 100.
+    # 5 % or 1 % of 40, over a limit estimated from 100 cubes: 8 are a beta-binomial chance of 1 in 100.
     assert np.count_nonzero(np.array(largest) > limit) < 8
     assert np.median(largest) > 0.8 * limit
 
