@@ -25,7 +25,7 @@ def _area_average(pixels: int, receptors: int) -> Float[Tensor, "receptors pixel
 
 
 FAINTEST = 0.002
-"""Contrast in grey levels that is amplified no further: above the rounding of float32, far below any texture."""
+"""Contrast (grey levels) that is amplified no further: above the rounding of float32, below any texture."""
 
 
 class Retina(nn.Module):
