@@ -1,23 +1,27 @@
 """The world and the body in it: what an animal can see, smell and bump into."""
 
-from arena.arena import Arena, Box, Pillar, Source, Wall, gallery
+from arena.arena import Arena, gallery
 from arena.body import Body
 from arena.camera import Camera
 from arena.errors import ArenaError
 from arena.exploration import explore
+from arena.light import Light
 from arena.motions import Motion, Walk
 from arena.motions.brownian import Brownian
 from arena.nose import Nose
 from arena.odour import OdourField
+from arena.parts import Block, Box, Pillar, Source, Wall
 from arena.recording import Recording
 
 __all__ = [
     "Arena",
     "ArenaError",
+    "Block",
     "Body",
     "Box",
     "Brownian",
     "Camera",
+    "Light",
     "Motion",
     "Nose",
     "OdourField",

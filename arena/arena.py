@@ -1,4 +1,4 @@
-"""The room: walls, boxes, pillars, odour sources, and the platform that the body may walk on."""
+"""The room: what is in it, and the platform that the body may walk on."""
 
 from __future__ import annotations
 
@@ -6,164 +6,84 @@ import tomllib
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any
 
 import numpy as np
 import pymunk
 import shapely
 import tomli_w
-from jaxtyping import Bool, Float, Int
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+from jaxtyping import Bool, Float
+from pydantic import Discriminator, Field, Tag, ValidationError, model_validator
 from shapely.geometry.base import BaseGeometry
+from typing_extensions import TypeAliasType
 
 from arena.errors import ArenaError
-from arena.materials import MATERIALS
+from arena.light import Light
 from arena.odour import OdourField
+from arena.parts import Block, Box, Length, Material, Part, Pillar, Polygon, Solid, Source, Wall
+from arena.schema import schema
 from arena.settings import complaint
+from arena.surfaces import Surfaces, surfaces
 
-Coordinate = Annotated[float, Field(allow_inf_nan=False, ge=-1e3, le=1e3)]
-Point = tuple[Coordinate, Coordinate]
-Length = Annotated[float, Field(allow_inf_nan=False, gt=0, le=1e3)]
-Polygon = Annotated[tuple[Point, ...], Field(min_length=3)]
-
-PILLAR_SIDES = 32
-"""A pillar is a regular prism, the same one for the eye, the body and the odour."""
 CLEARANCE = 0.01
 """An odour source nearer than this (m) to a wall counts as inside it."""
 
 
-def _known_material(name: str) -> str:
-    if name not in MATERIALS:
-        raise ValueError(f"unknown material {name!r}; known are {', '.join(sorted(MATERIALS))}")
-    return name
+Channel = Annotated[int, Field(strict=True, ge=0, le=255)]
+Colour = TypeAliasType("Colour", tuple[Channel, Channel, Channel])
 
 
-Material = Annotated[str, AfterValidator(_known_material)]
+def _kind_of_floor(floor: object) -> str:
+    return "<material>" if isinstance(floor, str) else "<colour>"
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class Wall(_Part):
-    """A thin vertical wall from `start` to `end` (m), seen from both sides, `height` m high."""
-
-    start: Point
-    end: Point
-    height: Length = 1.0
-    material: Material
-
-    @model_validator(mode="after")
-    def _has_length(self) -> Wall:
-        if np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]) < 1e-6:
-            raise ValueError(f"a wall of zero length at {self.start}; give it two different ends")
-        return self
-
-
-class Box(_Part):
-    """A solid box: `center` and `size` (width, depth) in m, turned by `angle_deg`, `height` m high."""
-
-    center: Point
-    size: tuple[Length, Length]
-    angle_deg: Annotated[float, Field(allow_inf_nan=False)] = 0.0
-    height: Length = 0.6
-    material: Material
-
-    @property
-    def outline(self) -> Float[np.ndarray, "corners 2"]:
-        """The corners in m, counter-clockwise."""
-        angle = np.deg2rad(self.angle_deg)
-        corners = 0.5 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * self.size
-        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        outline: np.ndarray = corners @ turn + self.center
-        return outline
-
-
-class Pillar(_Part):
-    """A solid round pillar: `center` and `radius` in m, `height` m high."""
-
-    center: Point
-    radius: Length
-    height: Length = 1.0
-    material: Material
-
-    @property
-    def outline(self) -> Float[np.ndarray, "corners 2"]:
-        """The corners of the prism in m, counter-clockwise."""
-        angle = np.arange(PILLAR_SIDES) * (2 * np.pi / PILLAR_SIDES)
-        return self.radius * np.stack([np.cos(angle), np.sin(angle)], axis=1) + self.center
-
-
-class Source(_Part):
-    """A point source of one odour at `position` (m)."""
-
-    position: Point
-
-
-class Surfaces(NamedTuple):
-    """Every vertical face of the room, boxes and pillars counter-clockwise seen from above."""
-
-    start: Float[np.ndarray, "faces 2"]
-    end: Float[np.ndarray, "faces 2"]
-    height: Float[np.ndarray, "faces"]
-    material: Int[np.ndarray, "faces"]
-    """Index into `materials`."""
-    offset: Float[np.ndarray, "faces"]
-    """Where along its material (m) the face starts: the faces of a box share one wrapping."""
-    closed: Bool[np.ndarray, "faces"]
-    """Whether the face bounds a solid, so that its back is never seen."""
-    materials: tuple[str, ...]
-    """The names of the materials in use, sorted."""
-
-
-class Arena(_Part):
-    """A room to explore, as in a TOML file; see `arena/gallery` for examples.
-
-    Parameters
-    ----------
-    name
-        What to call it.
-    platform
-        Polygons (m) whose union the whole body must stay on: an invisible border.
-    walls, boxes, pillars
-        What can be seen, bumped into, and what odours must flow around.
-    sources
-        One odorant each.
-    decay_length
-        Distance in m over which an odour decays in the open, sqrt(diffusivity / decay rate).
-    floor, ceiling
-        Colours, red green blue in 0..255.
-
-    Raises
-    ------
-    ArenaError
-        From `load`, `parse` and `create` for anything malformed, in one sentence.
-    """
+class Arena(Part):
+    """A room to explore, as in a TOML file; `load`, `parse` and `create` make one."""
 
     name: Annotated[str, Field(min_length=1)]
+    """What to call it."""
     platform: Annotated[tuple[Polygon, ...], Field(min_length=1)]
+    """Polygons (m) whose union the whole body must stay on: an invisible border."""
     walls: tuple[Wall, ...]
+    """With the solids below, what can be seen and bumped into, and what odours flow around."""
     boxes: tuple[Box, ...] = ()
+    """Solids with four sides."""
     pillars: tuple[Pillar, ...] = ()
+    """Solids that are round."""
+    blocks: tuple[Block, ...] = ()
+    """Solids on any simple polygon."""
     sources: tuple[Source, ...] = ()
+    """One odorant each."""
     decay_length: Length = 1.5
-    floor: tuple[Annotated[int, Field(ge=0, le=255)], ...] = Field((104, 98, 92), min_length=3, max_length=3)
-    ceiling: tuple[Annotated[int, Field(ge=0, le=255)], ...] = Field(
-        (140, 142, 146), min_length=3, max_length=3
-    )
+    """Distance in m over which an odour decays in the open, sqrt(diffusivity / decay rate)."""
+    floor: Annotated[
+        Annotated[Colour, Tag("<colour>")] | Annotated[Material, Tag("<material>")],
+        Discriminator(_kind_of_floor),
+    ] = (104, 98, 92)
+    """A colour, red green blue in 0..255, or the name of a material, for a textured floor."""
+    ceiling: Colour = (140, 142, 146)
+    """The colour at the horizon, red green blue in 0..255."""
+    zenith: Colour | None = None
+    """The colour straight up, towards which the ceiling shades; without it the ceiling is plain."""
+    light: Light | None = None
+    """A lamp over the ambient light; without it the light is ambient only."""
 
     @model_validator(mode="after")
     def _sound(self) -> Arena:
-        for index, corners in enumerate(self.platform):
-            if not shapely.Polygon(corners).is_valid:
-                raise ValueError(f"platform {index} crosses itself; list its corners in order")
-        if not (self.walls or self.boxes or self.pillars):
-            raise ValueError("nothing to see: give the room at least one wall, box or pillar")
+        if not (self.walls or self.solids):
+            raise ValueError("nothing to see: give the room at least one wall, box, pillar or block")
+        x0, y0, x1, y1 = self.bounds
         for index, source in enumerate(self.sources):
-            point = shapely.Point(source.position)
-            if self._obstacles.distance(point) < CLEARANCE:
+            x, y = source.position
+            if not (x0 <= x <= x1 and y0 <= y <= y1):
                 raise ValueError(
-                    f"odour source {index} at {source.position} is inside a wall; move it into free space"
+                    f"odour source {index} at {source.position} is outside the room, whose x min, y min, "
+                    f"x max, y max are {self.bounds}; move it inside"
+                )
+            if self.obstacles.distance(shapely.Point(x, y)) < CLEARANCE:
+                raise ValueError(
+                    f"odour source {index} at {source.position} is inside a wall or solid; "
+                    "move it into free space"
                 )
         return self
 
@@ -217,7 +137,7 @@ class Arena(_Part):
         """The steady odour field around this room's walls."""
         return OdourField(
             walls=np.array([(wall.start, wall.end) for wall in self.walls]).reshape(-1, 2, 2),
-            solids=[solid.outline for solid in self._solids],
+            solids=[solid.outline for solid in self.solids],
             bounds=self.bounds,
             sources=np.array([source.position for source in self.sources]).reshape(-1, 2),
             decay_length=self.decay_length,
@@ -226,12 +146,12 @@ class Arena(_Part):
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """The box around everything, (x min, y min, x max, y max) in m."""
-        x0, y0, x1, y1 = shapely.union_all([self._obstacles, self._walkable]).bounds
+        x0, y0, x1, y1 = shapely.union_all([self.obstacles, self.walkable]).bounds
         return float(x0), float(y0), float(x1), float(y1)
 
     def free_space(self, radius: float) -> BaseGeometry:
         """Where the centre of a disc of this radius (m) can be, as a shapely geometry."""
-        region: BaseGeometry = self._walkable.buffer(-radius) - self._obstacles.buffer(radius)
+        region: BaseGeometry = self.walkable.buffer(-radius) - self.obstacles.buffer(radius)
         return region
 
     def is_free(self, xy: Float[np.ndarray, "points 2"], radius: float) -> Bool[np.ndarray, "points"]:
@@ -268,9 +188,9 @@ class Arena(_Part):
     def space(self) -> pymunk.Space:
         """Build a pymunk space without gravity from the walls, solids and platform border."""
         space = pymunk.Space()
-        border = self._walkable
+        border = self.walkable
         rings = [ring for part in shapely.get_parts(border) for ring in (part.exterior, *part.interiors)]
-        rings += [shapely.LinearRing(solid.outline) for solid in self._solids]
+        rings += [shapely.LinearRing(solid.outline) for solid in self.solids]
         edges = [pair for ring in rings for pair in zip(ring.coords[:-1], ring.coords[1:], strict=True)]
         edges += [(wall.start, wall.end) for wall in self.walls]
         for a, b in edges:
@@ -280,35 +200,28 @@ class Arena(_Part):
     @cached_property
     def surfaces(self) -> Surfaces:
         """Every vertical face, for the eye."""
-        outlines: list[tuple[np.ndarray, Wall | Box | Pillar, bool]] = [
-            (np.array([wall.start, wall.end]), wall, False) for wall in self.walls
-        ]
-        outlines += [(np.vstack([solid.outline, solid.outline[:1]]), solid, True) for solid in self._solids]
-        names = tuple(sorted({part.material for _, part, _ in outlines}))
-        faces = [len(corners) - 1 for corners, _, _ in outlines]
-        lengths = [np.hypot(*np.diff(corners, axis=0).T) for corners, _, _ in outlines]
-        return Surfaces(
-            start=np.concatenate([corners[:-1] for corners, _, _ in outlines]),
-            end=np.concatenate([corners[1:] for corners, _, _ in outlines]),
-            height=np.repeat([part.height for _, part, _ in outlines], faces),
-            material=np.repeat([names.index(part.material) for _, part, _ in outlines], faces),
-            offset=np.concatenate([np.cumsum(length) - length for length in lengths]),
-            closed=np.repeat([closed for _, _, closed in outlines], faces),
-            materials=names,
-        )
+        return surfaces(self.walls, self.solids, [self.floor] if isinstance(self.floor, str) else [])
 
     @property
-    def _solids(self) -> tuple[Box | Pillar, ...]:
-        return (*self.boxes, *self.pillars)
+    def solids(self) -> tuple[Solid, ...]:
+        """Boxes, pillars and blocks, in this order."""
+        return (*self.boxes, *self.pillars, *self.blocks)
 
     @cached_property
-    def _walkable(self) -> BaseGeometry:
+    def walkable(self) -> BaseGeometry:
+        """The platform, as a shapely geometry."""
         return shapely.union_all([shapely.Polygon(corners) for corners in self.platform])
 
     @cached_property
-    def _obstacles(self) -> BaseGeometry:
+    def obstacles(self) -> BaseGeometry:
+        """Walls and solids, as a shapely geometry."""
         walls = [shapely.LineString([wall.start, wall.end]) for wall in self.walls]
-        return shapely.union_all(walls + [shapely.Polygon(solid.outline) for solid in self._solids])
+        return shapely.union_all(walls + [shapely.Polygon(solid.outline) for solid in self.solids])
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Describe the TOML file as JSON Schema; what only geometry can tell is checked on reading."""
+        return schema(cls)
 
 
 def gallery() -> list[str]:

@@ -12,7 +12,7 @@ from pydantic import Field
 from arena import raycast
 from arena.arena import Arena
 from arena.errors import ArenaError
-from arena.materials import weave
+from arena.materials import texture, weave
 from arena.settings import Settings
 
 Images = UInt8[np.ndarray, "views height width 3"]
@@ -107,7 +107,8 @@ class Camera(Settings):
         ArenaError
             For poses that are not finite.
         """
-        plain = np.array([arena.floor, arena.ceiling], np.float32)
+        floor = texture(arena.floor).mean((0, 1)) if isinstance(arena.floor, str) else arena.floor
+        plain = np.array([floor, arena.ceiling], np.float32)
         paints = raycast.Paints(*weave(arena.surfaces.materials), *plain)
         out = np.empty((len(poses), self.height, self.width, 3), np.uint8)
         raycast.render(_checked(poses), _faces(arena), paints, self._lens, out)
@@ -131,8 +132,7 @@ class Camera(Settings):
 
 
 def _faces(arena: Arena) -> raycast.Faces:
-    *faces, _ = arena.surfaces
-    return raycast.Faces(*faces)
+    return raycast.Faces(*arena.surfaces[:6])
 
 
 def _checked(poses: Poses) -> Float[np.ndarray, "views 3"]:

@@ -13,8 +13,8 @@ from arena.errors import ArenaError
 
 FAINTEST = 1e-30
 """Concentration where no odour arrives: positive, so that its logarithm and its float32 exist."""
-MOST_CELLS = 1_000_000
-"""Above this the factorisation takes minutes and gigabytes."""
+MOST_CELLS = 400_000
+"""Above this the factorisation takes more than a few seconds and a gigabyte."""
 
 _TAPS = np.arange(-1, 3)
 # Cubic convolution: the weight of each tap is a polynomial in the fraction, lowest power first (Keys 1981).
@@ -31,7 +31,8 @@ class OdourField:
     between the cell centres it parts, cells inside solids are left out, nothing leaves through `bounds`. A
     source is shared out bilinearly among the cells around it that it sees, which makes c finite within a cell
     of it. Between cell centres log c is interpolated by cubic convolution, which has continuous derivatives
-    and reaches two cells far; nearer than that to a wall inside `bounds` it blends both of the wall's sides.
+    and reaches two cells far; nearer than that to a wall inside `bounds` it blends both of the wall's sides,
+    unless no odour arrives at one of them: half a cell from such a wall the concentration drops to `FAINTEST`.
 
     Parameters
     ----------
@@ -101,9 +102,11 @@ class OdourField:
         wx, wy = (
             _weights(fraction[:, axis], order[axis]) / self._step[axis] ** order[axis] for axis in (0, 1)
         )
-        samples = self._log[index[:, 0, :, None], index[:, 1, None, :]]
+        log, reached = self._log
+        samples = log[index[:, 0, :, None], index[:, 1, None, :]]
         out: np.ndarray = np.einsum("pi,pj,pijk->pk", wx, wy, samples)
-        return out
+        i, j = np.minimum((xy - self.bounds[:2]) // self._step, np.subtract(self._shape, 1)).astype(int).T
+        return np.where(reached[i, j], out, 0.0 if any(order) else np.log(FAINTEST))
 
     def _within(self, xy: Float[np.ndarray, "points 2"]) -> Bool[np.ndarray, " points"]:
         low, high = np.reshape(self.bounds, (2, 2))
@@ -200,16 +203,30 @@ class OdourField:
         return sparse.coo_array((np.concatenate(entries), where), shape=2 * (free.size,)).tocsc()
 
     @cached_property
-    def _log(self) -> Float[np.ndarray, "nx_and_4 ny_and_4 odorants"]:
-        """Log concentration at the cell centres, with two mirrored cells beyond each side."""
+    def _log(
+        self,
+    ) -> tuple[Float[np.ndarray, "nx_and_4 ny_and_4 odorants"], Bool[np.ndarray, "nx ny odorants"]]:
+        """Log concentration at the cell centres, with two mirrored cells beyond each side; where any arrives.
+
+        A cell in a solid, and for the taps of its neighbours a cell that no odour arrives at, is like the
+        nearest that has an odour.
+        """
         concentration = splu(self._matrix()).solve(self._spread()).reshape(*self._shape, len(self.sources))
-        log = np.log(np.maximum(concentration, FAINTEST))
         if not self._free.any():
             raise ArenaError("the odour has no free cell to be in; make room between the solids")
-        nearest = ndimage.distance_transform_edt(
-            ~self._free, sampling=self._step, return_distances=False, return_indices=True
+        concentration = concentration[self._nearest(self._free)]
+        reached = concentration > FAINTEST
+        for odorant in np.flatnonzero(~reached.all(axis=(0, 1))):
+            concentration[..., odorant] = concentration[..., odorant][self._nearest(reached[..., odorant])]
+        return np.pad(np.log(concentration), ((2, 2), (2, 2), (0, 0)), mode="symmetric"), reached
+
+    def _nearest(self, cells: Bool[np.ndarray, "nx ny"]) -> tuple[Int[np.ndarray, "nx ny"], ...]:
+        """For every cell the indices of the nearest of these."""
+        return tuple(
+            ndimage.distance_transform_edt(
+                ~cells, sampling=self._step, return_distances=False, return_indices=True
+            )
         )
-        return np.pad(log[tuple(nearest)], ((2, 2), (2, 2), (0, 0)), mode="symmetric")
 
 
 def _weights(fraction: Float[np.ndarray, "points"], order: int) -> Float[np.ndarray, "points 4"]:

@@ -1,8 +1,16 @@
 """The values that describe a body, a nose or a motion: checked once, then never changed."""
 
+from reprlib import Repr
+
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from arena.errors import ArenaError
+
+_shortened = Repr()
+_shortened.maxstring = 60
+
+_IN_TOML = {"tuple_type": "Input should be a list", "model_type": "Input should be a table"}
+"""What pydantic calls by the names of Python."""
 
 
 class Settings(BaseModel):
@@ -26,12 +34,19 @@ class Settings(BaseModel):
 def complaint(error: ValidationError) -> str:
     """Say in one line where the first mistake is, what was given there and what is wrong with it."""
     first = error.errors()[0]
+    place = first["loc"]
+    if first["type"] != "extra_forbidden":
+        # Which of several kinds of value was tried is no key.
+        place = tuple(key for key in place if not str(key).startswith("<"))
     # A quoted key in TOML may hold a line break.
-    keys = [str(key) if str(key).isprintable() else repr(key) for key in first["loc"]]
+    keys = [str(key) if str(key).isprintable() else repr(key) for key in place]
     given = first["input"]
-    shown = (
-        f" is {given!r}"
-        if isinstance(given, str | int | float) and first["type"] != "extra_forbidden"
-        else ""
-    )
-    return f"{'.'.join(keys) or 'the arena'}{shown}: {first['msg'].removeprefix('Value error, ')}"
+    shown = f" is {_shortened.repr(given)}" if _is_shown(given, first["type"]) else ""
+    wrong = _IN_TOML.get(first["type"], first["msg"].removeprefix("Value error, "))
+    return f"{'.'.join(keys) or 'the arena'}{shown}: {wrong}"
+
+
+def _is_shown(given: object, complaint_type: str) -> bool:
+    # Python refuses to print whole numbers of more than 4300 digits.
+    printable = isinstance(given, str | float) or (isinstance(given, int) and abs(given) < 10**20)
+    return printable and complaint_type != "extra_forbidden"

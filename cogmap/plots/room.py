@@ -8,14 +8,22 @@ from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from shapely.geometry.base import BaseGeometry
 
-from arena.arena import Arena, Box, Pillar
+from arena.arena import Arena
+from arena.light import Light
 from arena.materials import texture
+from arena.odour import FAINTEST
+from arena.parts import Solid, Wall
 from cogmap.cells.checks import check_array
-from cogmap.plots.style import INK, SMALL, SOFT, direction_colours, new_figure, tidy_room
+from cogmap.plots.style import INK, SMALL, SOFT, TINY, direction_colours, new_figure, tidy_room
 
 GRID = 0.04
 """Spacing in m of the points where the odour is asked for."""
+MOST = 500
+"""Of them at most, along either axis."""
+LONG = 0.5
+"""Sides of a solid shorter than this (m) are not named."""
 HALVINGS = 7
 """Contours per odour at most."""
 FIRST_VIEWS = 300
@@ -23,11 +31,12 @@ FIRST_VIEWS = 300
 
 
 def plot_room(arena: Arena, poses: Float[np.ndarray, "views 3"] | None = None) -> Figure:
-    """Draw the arena from above: walls, boxes and pillars, platform, odours, and where views were taken.
+    """Draw the arena from above: walls, solids, platform, odours, light, and where views were taken.
 
-    Solids have the mean colour of their material. The border of the platform is dashed. From one contour of
-    an odour to the next outer one the concentration halves; all odours have the same levels. Every view is
-    a dot, the way between the first 300 a line.
+    Walls, solids and their sides have the mean colour of their material, whose name and height stand beside
+    or on them. The border of the platform is dashed. From one contour of an odour to the next outer one the
+    concentration halves; all odours have the same levels. Every view is a dot, the way between the first 300
+    a line.
 
     Parameters
     ----------
@@ -40,21 +49,30 @@ def plot_room(arena: Arena, poses: Float[np.ndarray, "views 3"] | None = None) -
     ------
     CogmapError
         When `poses` is not a finite (views, 3) array.
+    ArenaError
+        For odours that the room's grid cannot resolve.
     """
     if poses is not None:
         check_array("poses", poses, (None, 3))
     x0, y0, x1, y1 = arena.bounds
-    width = 8.0
-    figure = new_figure(width, np.clip(width * (y1 - y0) / (x1 - x0) + 0.4, 2.0, 12.0))
+    width = 8.0 if arena.light is None else 7.0
+    figure = new_figure(8.0, np.clip(width * (y1 - y0) / (x1 - x0) + 0.4, 2.0, 12.0))
     axes = figure.add_subplot()
     tidy_room(axes, title=f"{arena.name}: from one odour contour to the next the concentration halves")
-    _draw_surfaces(axes, arena)
+    axes.title.set_parse_math(False)
+    _draw_platform(axes, arena)
+    for wall in arena.walls:
+        _draw_wall(axes, wall, arena.walkable)
+    for solid in arena.solids:
+        _draw_solid(axes, solid)
     _draw_odours(axes, arena)
+    if arena.light is not None:
+        _draw_light(axes, arena.light)
     if poses is not None:
         _draw_path(axes, poses)
-    margin = 0.03 * max(x1 - x0, y1 - y0)
+    margin = 0.05 * max(x1 - x0, y1 - y0)
     axes.set(xlim=(x0 - margin, x1 + margin), ylim=(y0 - margin, y1 + margin))
-    figure.legend(loc="outside lower center", ncols=3, fontsize=SMALL, labelcolor=INK, frameon=False)
+    figure.legend(loc="outside lower center", ncols=5, fontsize=SMALL, labelcolor=INK, frameon=False)
     return figure
 
 
@@ -63,34 +81,107 @@ def _colour(material: str) -> tuple[float, float, float]:
     return float(red), float(green), float(blue)
 
 
-def _draw_surfaces(axes: Axes, arena: Arena) -> None:
-    platform = shapely.union_all([shapely.Polygon(corners) for corners in arena.platform])
-    for index, ring in enumerate(shapely.get_parts(platform.boundary)):
+def _draw_platform(axes: Axes, arena: Arena) -> None:
+    for index, ring in enumerate(shapely.get_parts(arena.walkable.boundary)):
         axes.plot(*ring.xy, "--", color=INK, linewidth=1, zorder=3, label="platform" if index == 0 else None)
-    solids: list[Box | Pillar] = [*arena.boxes, *arena.pillars]
-    for solid in solids:
-        axes.add_patch(
-            Polygon(solid.outline, facecolor=_colour(solid.material), edgecolor=INK, linewidth=0.8, zorder=4)
+    if isinstance(arena.floor, str):
+        axes.plot(
+            [], [], "s", color=_colour(arena.floor), markeredgecolor=INK, label=f"floor of {arena.floor}"
         )
-    for wall in arena.walls:
-        x, y = np.transpose([wall.start, wall.end])
-        axes.plot(x, y, color=INK, linewidth=6.5, solid_capstyle="projecting", zorder=5)
-        axes.plot(x, y, color=_colour(wall.material), linewidth=5, solid_capstyle="projecting", zorder=5.1)
+
+
+def _draw_wall(axes: Axes, wall: Wall, walkable: BaseGeometry) -> None:
+    ends = np.array([wall.start, wall.end])
+    axes.plot(*ends.T, color=INK, linewidth=6.5, solid_capstyle="projecting", zorder=5)
+    axes.plot(*ends.T, color=_colour(wall.material), linewidth=5, solid_capstyle="projecting", zorder=5.1)
+    along = np.subtract(wall.end, wall.start)
+    normal = np.array([along[1], -along[0]]) / np.hypot(*along)
+    aside = shapely.points(ends.mean(axis=0) + [0.1 * normal, -0.1 * normal])
+    outward = normal if np.diff(shapely.distance(walkable, aside)) <= 0 else -normal
+    _name_side(axes, ends, outward, f"{wall.material}, {wall.height:g} m")
+
+
+def _draw_solid(axes: Axes, solid: Solid) -> None:
+    lid = _colour(solid.sides[0])
+    axes.add_patch(Polygon(solid.outline, facecolor=lid, edgecolor=INK, linewidth=0.8, zorder=4))
+    said = f"{solid.height:g} m"
+    if len(set(solid.sides)) == 1:
+        said = f"{solid.sides[0]}\n{said}"
+    else:
+        sides = np.stack([solid.outline, np.roll(solid.outline, -1, axis=0)], axis=1)
+        for side, name in zip(sides, solid.sides, strict=True):
+            axes.plot(*side.T, color=_colour(name), linewidth=3, zorder=4.1)
+            along = side[1] - side[0]
+            if np.hypot(*along) >= LONG:
+                _name_side(axes, side, np.array([along[1], -along[0]]) / np.hypot(*along), name)
+    width, depth = np.ptp(solid.outline, axis=0)
+    middle = shapely.Polygon(solid.outline).representative_point()
+    axes.text(
+        middle.x,
+        middle.y,
+        said,
+        ha="center",
+        va="center",
+        rotation=90 if depth > width else 0,
+        fontsize=TINY,
+        color="white" if np.dot(lid, (0.3, 0.6, 0.1)) < 0.5 else INK,
+        clip_on=True,
+        zorder=7,
+    )
+
+
+def _name_side(
+    axes: Axes, ends: Float[np.ndarray, "2 2"], outward: Float[np.ndarray, " 2"], said: str
+) -> None:
+    """Write along a side, on the side that `outward` points to."""
+    dx, dy = ends[1] - ends[0]
+    # Never upside down.
+    turn = np.rad2deg(np.arctan2(dy, dx)) % 180
+    axes.annotate(
+        said,
+        ends.mean(axis=0),
+        10 * outward,
+        textcoords="offset points",
+        rotation=turn - 180 if turn > 90.5 else turn,
+        rotation_mode="anchor",
+        ha="center",
+        va="center_baseline",
+        fontsize=TINY,
+        color=INK,
+        zorder=7,
+    )
+
+
+def _draw_light(axes: Axes, light: Light) -> None:
+    across, up = light.direction[:2] / np.hypot(*light.direction[:2])
+    beside = {"xy": (1.07, 0.8), "xycoords": "axes fraction", "textcoords": "offset points"}
+    axes.annotate("", xytext=(40 * across, 40 * up), arrowprops={"arrowstyle": "-|>", "color": INK}, **beside)
+    axes.annotate(
+        f"light from {light.azimuth_deg:g}°,\n{light.elevation_deg:g}° up,\nstrength {light.strength:g}",
+        xytext=(0, -8 if up > 0 else 8),
+        ha="center",
+        va="top" if up > 0 else "bottom",
+        fontsize=TINY,
+        color=INK,
+        **beside,
+    )
 
 
 def _draw_odours(axes: Axes, arena: Arena) -> None:
     if not arena.sources:
         return
     x0, y0, x1, y1 = arena.bounds
-    x, y = (np.linspace(a, b, 2 + int((b - a) / GRID)) for a, b in ((x0, x1), (y0, y1)))
+    x, y = (np.linspace(a, b, min(2 + int((b - a) / GRID), MOST)) for a, b in ((x0, x1), (y0, y1)))
     points = np.stack(np.meshgrid(x, y), axis=-1)
     odours = arena.odours.concentration(points.reshape(-1, 2)).reshape(*points.shape[:2], -1)
-    highest = int(np.floor(np.log2(odours.max())))
+    # Where none arrives there is nothing to draw, and no way from the least to nothing.
+    odours[odours <= FAINTEST * 1.01] = np.nan
+    highest = int(np.floor(np.log2(np.nanmax(odours))))
     levels = 2.0 ** np.arange(highest - HALVINGS + 1, highest + 1)
     hues = direction_colours(2 * np.pi * np.arange(len(arena.sources)) / len(arena.sources))
     for index, (source, hue) in enumerate(zip(arena.sources, hues, strict=True)):
         odour = odours[..., index]
-        reached = levels[(levels > odour.min()) & (levels < odour.max())]
+        reached = levels[(levels > np.nanmin(odour)) & (levels < np.nanmax(odour))]
         if len(reached):
             axes.contour(x, y, odour, reached, colors=[hue], linewidths=0.9, zorder=2)
         axes.plot(
