@@ -32,7 +32,7 @@ class OdourField:
     source is shared out bilinearly among the cells around it that it sees, which makes c finite within a cell
     of it. Between cell centres log c is interpolated by cubic convolution, which has continuous derivatives
     and reaches two cells far; nearer than that to a wall inside `bounds` it blends both of the wall's sides,
-    unless no odour arrives at one of them: half a cell from such a wall the concentration drops to `FAINTEST`.
+    unless no odour arrives at one of them: within half a cell of such a wall it drops to `FAINTEST`.
 
     Parameters
     ----------

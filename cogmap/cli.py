@@ -10,12 +10,13 @@ from typing import Annotated, Any
 import cyclopts
 import numpy as np
 from cyclopts import App, Parameter
+from matplotlib.figure import Figure
 
-from arena import Arena, ArenaError, Body, Brownian, Camera, Nose, Recording, explore
+from arena import Arena, ArenaError, Body, Brownian, Camera, Nose, Recording, explore, gallery
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.experiments.demo import demo
-from cogmap.plots import plot_room
+from cogmap.plots import plot_room, plot_sheet
 from cogmap.scoring import score
 from cogmap.tables import as_table
 from neurons.errors import NeuronsError
@@ -77,31 +78,50 @@ def _demo(
 
 
 @app.command(name="arena")
-def _arena(name: str, /, *, out: Path | None = None, as_json: Json = False) -> None:
-    """Show a room: what is in it, and a picture of it from above.
+def _arena(
+    name: str | None = None,
+    /,
+    *,
+    out: Path | None = None,
+    sheet: Path | None = None,
+    schema: Annotated[bool, Parameter(negative="")] = False,
+    as_json: Json = False,
+) -> None:
+    """Show a room: what is in it, a picture of it from above, and how it looks from inside.
 
-    Examples: `cogmap arena pillar --out pillar.png`; `cogmap arena my_room.toml --json`.
+    Examples: `cogmap arena pillar --out pillar.png --sheet views.png`; `cogmap arena my_room.toml --json`;
+    `cogmap arena --schema > arena.schema.json`.
 
     Parameters
     ----------
     name
         A room of the gallery or a TOML file.
     out
-        PNG to write the picture to; it must not exist.
+        PNG to write the picture from above to; it must not exist.
+    sheet
+        PNG to write perspective and panoramic views to; it must not exist.
+    schema
+        Print the JSON Schema of the TOML files instead.
     """
+    if schema:
+        _report(Arena.json_schema(), as_json=True)
+        return
+    if name is None:
+        raise CogmapError(f"no room is given; choose one of {', '.join(gallery())} or give a TOML file")
     room = Arena.load(name)
-    radius = Body().radius
     described = {
         "arena": room.name,
         "walls": len(room.walls),
         "boxes": len(room.boxes),
         "pillars": len(room.pillars),
+        "blocks": len(room.blocks),
         "odour_sources": len(room.sources),
-        "free_area_m2": float(room.free_space(radius).area),
+        "free_area_m2": float(room.free_space(Body().radius).area),
     }
-    if out is not None:
-        _check_absent(out)
-        plot_room(room).savefig(out)
+    for path, plot in ((out, plot_room), (sheet, plot_sheet)):
+        if path is not None:
+            _check_absent(path)
+            _save(plot(room), path)
     _report(described, as_json=as_json)
 
 
@@ -221,6 +241,13 @@ def _check_absent(out: Path) -> None:
         raise CogmapError(
             f"{out} exists already and is left as it is; choose another path or remove it first"
         )
+
+
+def _save(figure: Figure, path: Path) -> None:
+    try:
+        figure.savefig(path, format="png")
+    except OSError as error:
+        raise CogmapError(f"cannot write {path}: {error.strerror}") from None
 
 
 def _report(metrics: dict[str, Any], *, as_json: bool) -> None:

@@ -6,6 +6,7 @@ from cogmap.plots.heading_cells import plot_tuning_curves
 from cogmap.plots.place_cells import plot_rate_maps
 from cogmap.plots.position import plot_position
 from cogmap.plots.room import plot_room
+from cogmap.plots.sheet import plot_sheet
 from cogmap.plots.views import plot_views
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "plot_position",
     "plot_rate_maps",
     "plot_room",
+    "plot_sheet",
     "plot_tuning_curves",
     "plot_views",
 ]

@@ -24,6 +24,8 @@ MOST = 500
 """Of them at most, along either axis."""
 LONG = 0.5
 """Sides of a solid shorter than this (m) are not named."""
+BESIDE = (1.07, 0.8)
+"""Where the light is pointed out, right of the room."""
 HALVINGS = 7
 """Contours per odour at most."""
 FIRST_VIEWS = 300
@@ -96,7 +98,7 @@ def _draw_wall(axes: Axes, wall: Wall, walkable: BaseGeometry) -> None:
     axes.plot(*ends.T, color=_colour(wall.material), linewidth=5, solid_capstyle="projecting", zorder=5.1)
     along = np.subtract(wall.end, wall.start)
     normal = np.array([along[1], -along[0]]) / np.hypot(*along)
-    aside = shapely.points(ends.mean(axis=0) + [0.1 * normal, -0.1 * normal])
+    aside = shapely.points(ends.mean(axis=0) + np.outer([0.1, -0.1], normal))
     outward = normal if np.diff(shapely.distance(walkable, aside)) <= 0 else -normal
     _name_side(axes, ends, outward, f"{wall.material}, {wall.height:g} m")
 
@@ -139,8 +141,8 @@ def _name_side(
     turn = np.rad2deg(np.arctan2(dy, dx)) % 180
     axes.annotate(
         said,
-        ends.mean(axis=0),
-        10 * outward,
+        tuple(ends.mean(axis=0).tolist()),
+        tuple((10 * outward).tolist()),
         textcoords="offset points",
         rotation=turn - 180 if turn > 90.5 else turn,
         rotation_mode="anchor",
@@ -153,17 +155,25 @@ def _name_side(
 
 
 def _draw_light(axes: Axes, light: Light) -> None:
-    across, up = light.direction[:2] / np.hypot(*light.direction[:2])
-    beside = {"xy": (1.07, 0.8), "xycoords": "axes fraction", "textcoords": "offset points"}
-    axes.annotate("", xytext=(40 * across, 40 * up), arrowprops={"arrowstyle": "-|>", "color": INK}, **beside)
+    across, up = (light.direction[:2] / np.hypot(*light.direction[:2])).tolist()
+    axes.annotate(
+        "",
+        BESIDE,
+        (40 * across, 40 * up),
+        xycoords="axes fraction",
+        textcoords="offset points",
+        arrowprops={"arrowstyle": "-|>", "color": INK},
+    )
     axes.annotate(
         f"light from {light.azimuth_deg:g}°,\n{light.elevation_deg:g}° up,\nstrength {light.strength:g}",
-        xytext=(0, -8 if up > 0 else 8),
+        BESIDE,
+        (0, -8 if up > 0 else 8),
+        xycoords="axes fraction",
+        textcoords="offset points",
         ha="center",
         va="top" if up > 0 else "bottom",
         fontsize=TINY,
         color=INK,
-        **beside,
     )
 
 

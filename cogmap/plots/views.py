@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float, UInt8
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from cogmap.cells.checks import check_array
 from cogmap.errors import CogmapError
@@ -45,16 +45,36 @@ def plot_views(
     CogmapError
         For no views, poses that do not fit them, fewer than one column.
     """
-    count, rows, width, _ = views.shape
+    count = len(views)
     if count == 0 or columns < 1:
         raise CogmapError(f"{count} views in {columns} columns; give at least one of each")
     if poses is not None:
         check_array("poses", poses, (count, 3))
+    figure = new_figure(WIDTH, max(2.0, sheet_height(views, columns)))
+    draw_views(figure, views, poses, columns, panoramic=panoramic)
+    return figure
+
+
+def sheet_height(views: UInt8[np.ndarray, "views height width 3"], columns: int) -> float:
+    """How high a sheet of these views, `WIDTH` inches wide, must be, in inches."""
+    count, rows, width, _ = views.shape
     columns = min(columns, count)
-    lines = -(-count // columns)
     panel = (WIDTH - 0.6) / columns * rows / width + 0.28
-    figure = new_figure(WIDTH, max(2.0, lines * panel + 0.6))
-    grid = figure.subplots(lines, columns, squeeze=False, sharex=True, sharey=True)
+    return float(-(-count // columns) * panel + 0.6)
+
+
+def draw_views(
+    figure: Figure | SubFigure,
+    views: UInt8[np.ndarray, "views height width 3"],
+    poses: Float[np.ndarray, "views 3"] | None,
+    columns: int,
+    *,
+    panoramic: bool,
+) -> None:
+    """Fill a figure or a part of one with views; see `plot_views`."""
+    count = len(views)
+    columns = min(columns, count)
+    grid = figure.subplots(-(-count // columns), columns, squeeze=False, sharex=True, sharey=True)
     for index, axes in enumerate(grid.ravel()):
         if index >= count:
             axes.set_axis_off()
@@ -68,7 +88,6 @@ def plot_views(
         axes.tick_params(labelbottom=index + columns >= count, labelleft=index % columns == 0)
     figure.supxlabel("azimuth (°)" if panoramic else "column (pixels)", fontsize=SMALL, color=INK)
     figure.supylabel("elevation (°)" if panoramic else "row (pixels)", fontsize=SMALL, color=INK)
-    return figure
 
 
 def _draw_panorama(axes: Axes, view: UInt8[np.ndarray, "height width 3"]) -> None:
