@@ -21,6 +21,7 @@ from arena.errors import ArenaError
 from arena.light import Light
 from arena.odour import OdourField
 from arena.parts import Block, Box, Length, Material, Part, Pillar, Polygon, Solid, Source, Wall
+from arena.scene import Scene, scene
 from arena.schema import schema
 from arena.settings import complaint
 from arena.surfaces import Surfaces, surfaces
@@ -201,6 +202,11 @@ class Arena(Part):
     def surfaces(self) -> Surfaces:
         """Every vertical face, for the eye."""
         return surfaces(self.walls, self.solids, [self.floor] if isinstance(self.floor, str) else [])
+
+    @cached_property
+    def scene(self) -> Scene:
+        """What there is to see, as the kernels of the eye want it."""
+        return scene(self.surfaces, self.floor, self.light)
 
     @property
     def solids(self) -> tuple[Solid, ...]:

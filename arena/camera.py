@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import Annotated, Literal
 
 import numpy as np
-from jaxtyping import Float, UInt8
+from jaxtyping import Float, Int32, UInt8, UInt32
 from pydantic import Field
 
-from arena import raycast
+from arena import painting, raycast
 from arena.arena import Arena
+from arena.backdrop import backdrop
 from arena.errors import ArenaError
-from arena.materials import texture, weave
 from arena.settings import Settings
 
 Images = UInt8[np.ndarray, "views height width 3"]
 Poses = Float[np.ndarray, "views 3"]
+
+_FEW = 4
+"""Below this many views a thread takes longer to start than to work."""
 
 
 class Camera(Settings):
@@ -36,6 +40,8 @@ class Camera(Settings):
         Horizontal, rad; 2π for a panoramic camera.
     eye_height
         Above the floor, m.
+    noise
+        Standard deviation of the sensor's independent Gaussian noise, as a share of the brightest grey level.
 
     Raises
     ------
@@ -48,6 +54,7 @@ class Camera(Settings):
     height: Annotated[int, Field(gt=0, le=8192)]
     field_of_view: Annotated[float, Field(gt=0)]
     eye_height: Annotated[float, Field(gt=0, le=1e3)] = 0.3
+    noise: Annotated[float, Field(ge=0, le=1)] = 0.0
 
     def __init__(self, **fields: object) -> None:
         super().__init__(**fields)
@@ -68,6 +75,7 @@ class Camera(Settings):
         *,
         field_of_view: float = np.pi / 2,
         eye_height: float = 0.3,
+        noise: float = 0.0,
     ) -> Camera:
         """Make a pinhole camera; `field_of_view` (rad) below π."""
         return cls(
@@ -76,10 +84,13 @@ class Camera(Settings):
             height=height,
             field_of_view=field_of_view,
             eye_height=eye_height,
+            noise=noise,
         )
 
     @classmethod
-    def panoramic(cls, width: int = 360, height: int = 60, *, eye_height: float = 0.3) -> Camera:
+    def panoramic(
+        cls, width: int = 360, height: int = 60, *, eye_height: float = 0.3, noise: float = 0.0
+    ) -> Camera:
         """Make a camera that sees all around."""
         return cls(
             projection="panoramic",
@@ -87,6 +98,7 @@ class Camera(Settings):
             height=height,
             field_of_view=2 * np.pi,
             eye_height=eye_height,
+            noise=noise,
         )
 
     @property
@@ -96,22 +108,55 @@ class Camera(Settings):
             return self.width / (2 * np.pi)
         return self.width / (2 * math.tan(self.field_of_view / 2))
 
-    def render(self, arena: Arena, poses: Poses) -> Images:
+    def render(
+        self,
+        arena: Arena,
+        poses: Poses,
+        *,
+        out: Images | None = None,
+        rng: np.random.Generator | None = None,
+    ) -> Images:
         """Paint what the camera sees from each pose (m, m, rad).
 
         Each pixel is the mean of the texture over the area it covers; the same poses give the same bits
-        whatever the number of threads.
+        whatever the number of threads and however they are batched, but for the noise.
+
+        Parameters
+        ----------
+        out
+            Buffer to paint into, C-contiguous; it is also returned.
+        rng
+            Where the sensor noise comes from; needed only if the camera has `noise`.
 
         Raises
         ------
         ArenaError
-            For poses that are not finite.
+            For poses that are not finite, a buffer that does not fit, or noise without a generator.
         """
-        floor = texture(arena.floor).mean((0, 1)) if isinstance(arena.floor, str) else arena.floor
-        plain = np.array([floor, arena.ceiling], np.float32)
-        paints = raycast.Paints(*weave(arena.surfaces.materials), *plain)
-        out = np.empty((len(poses), self.height, self.width, 3), np.uint8)
-        raycast.render(_checked(poses), _faces(arena), paints, self._lens, out)
+        poses = _checked(poses)
+        shape = (len(poses), self.height, self.width, 3)
+        if out is None:
+            out = np.empty(shape, np.uint8)
+        elif out.shape != shape or not out.flags.c_contiguous:
+            raise ArenaError(
+                f"the buffer is {out.dtype} of shape {out.shape}; "
+                f"these views need C-contiguous uint8 of {shape}"
+            )
+        if self.noise and rng is None:
+            raise ArenaError(f"the camera has noise {self.noise:g}; give `rng`, a numpy.random.Generator")
+        lens, ray = self._optics
+        faces, floor, texels, place = arena.scene
+        sky = backdrop(lens, floor[:3], arena.ceiling, arena.zenith)
+        words = _words(out)
+        if len(poses) < _FEW:
+            for pose, image, row in zip(poses, out, words, strict=True):
+                painting.paint(pose, faces, lens, floor, texels, place, sky, ray, image, row)
+        else:
+            painting.render(poses, faces, lens, floor, texels, place, sky, ray, out, words)
+        if rng is not None and self.noise:
+            for image in out:
+                grain = rng.standard_normal(image.shape, dtype=np.float32)
+                image[:] = np.clip(np.rint(image + 255 * self.noise * grain), 0, 255)
         return out
 
     def depth(self, arena: Arena, poses: Poses) -> Float[np.ndarray, "views width"]:
@@ -123,16 +168,41 @@ class Camera(Settings):
             For poses that are not finite.
         """
         out = np.empty((len(poses), self.width))
-        raycast.depths(_checked(poses), _faces(arena), self._lens, out)
+        raycast.measure(_checked(poses), arena.scene.faces, self._optics[0], out)
         return out
 
-    @property
-    def _lens(self) -> raycast.Lens:
-        return raycast.Lens(self.width, self.focal_length, self.eye_height, self.projection == "panoramic")
+    def identify(self, arena: Arena, poses: Poses) -> Int32[np.ndarray, "views height width"]:
+        """Tell which surface is seen at the middle of each pixel.
+
+        Returns
+        -------
+        index
+            The row of `arena.surfaces`; for the top of a solid lower than the eye the number of rows plus the
+            solid's index; −1 for the floor and −2 for the ceiling (`arena.raycast.FLOOR`, `CEILING`).
+
+        Raises
+        ------
+        ArenaError
+            For poses that are not finite.
+        """
+        out = np.empty((len(poses), self.height, self.width), np.int32)
+        raycast.identify(_checked(poses), arena.scene.faces, self._optics[0], out)
+        return out
+
+    @cached_property
+    def _optics(self) -> tuple[raycast.Lens, Float[np.ndarray, "width_and_one 2"]]:
+        """The lens, and the direction (ahead, left) between columns."""
+        panoramic = self.projection == "panoramic"
+        lens = raycast.Lens(self.width, self.height, self.focal_length, self.eye_height, panoramic)
+        return lens, np.array([raycast.direction(x, lens) for x in np.arange(self.width + 1.0)])
 
 
-def _faces(arena: Arena) -> raycast.Faces:
-    return raycast.Faces(*arena.surfaces[:6])
+def _words(images: Images) -> UInt32[np.ndarray, "views height words"]:
+    """View the same memory as words of four bytes; no rows where an image's row is not of whole words."""
+    views, height, width, _ = images.shape
+    if width % 4:
+        return np.empty((views, 0, 0), np.uint32)
+    return images.reshape(views, height, 3 * width).view(np.uint32)
 
 
 def _checked(poses: Poses) -> Float[np.ndarray, "views 3"]:

@@ -17,24 +17,22 @@ TEXEL = 0.01
 """Side of a texel, m."""
 TILE = (1024, 128)
 """Texels along the wall and up the wall before the texture repeats."""
+LEVELS = (11, 8)
+"""Resolutions along the wall and up the wall, each half the one before."""
 
 Texture = UInt8[np.ndarray, "along up 3"]
 _Tint = tuple[int, int, int]
 
 
 class Weave(NamedTuple):
-    """The textures of a room as running sums along and up the wall, for exact averages over any part of it.
+    """The textures of a room at every pair of resolutions.
 
-    The mean over rows v0 to v1 between u0 and u1 is (F(v1) - F(v0)) / (v1 - v0), where
-    F(v) = mean[v] + (sums[u1, v] - sums[u0, v]) / (u1 - u0). The mean of each row is taken out of `sums`,
-    which makes them periodic along the wall and small enough for float32.
+    At levels (i, j) a texel is 2^i texels long and 2^j texels high. Those of material m start at
+    `texels[m, place[i, j]]`: first along the wall, then up the wall, red green blue and a spare byte each.
     """
 
-    sums: Float32[np.ndarray, "materials along_and_one up_and_one_times_3"]
-    mean: Float32[np.ndarray, "materials up_and_one_times_3"]
-    """Running sums up the wall of the mean of each row."""
-    lid: Float32[np.ndarray, "materials 3"]
-    """Colour of the top of a box."""
+    texels: UInt8[np.ndarray, "materials bytes"]
+    place: Int[np.ndarray, "levels_along levels_up"]
 
 
 def _cloud(rng: np.random.Generator, along: float, up: float) -> Float[np.ndarray, "along up"]:
@@ -208,12 +206,21 @@ def texture(name: str) -> Texture:
 
 @cache
 def weave(names: tuple[str, ...]) -> Weave:
-    """Stack the running sums of the named materials for the ray caster."""
-    tiles = np.stack([texture(name) for name in names]).astype(np.float64)
-    mean = tiles.mean(axis=1)
-    sums = np.zeros((len(names), TILE[0] + 1, TILE[1] + 1, 3))
-    sums[:, 1:, 1:] = (tiles - mean[:, None]).cumsum(axis=1).cumsum(axis=2)
-    risen = np.zeros((len(names), TILE[1] + 1, 3))
-    risen[:, 1:] = mean.cumsum(axis=1)
-    flat = sums.reshape(len(names), TILE[0] + 1, -1), risen.reshape(len(names), -1), 0.8 * mean.mean(axis=1)
-    return Weave(*(part.astype(np.float32) for part in flat))
+    """Average the named materials for the ray caster."""
+    tiles = np.zeros((len(names), *TILE, 4))
+    tiles[..., :3] = [texture(name) for name in names]
+    blocks, place, total = [], np.empty(LEVELS, dtype=np.int64), 0
+    for i, j in np.ndindex(LEVELS):
+        shape = TILE[0] >> i, 1 << i, TILE[1] >> j, 1 << j
+        coarse = tiles.reshape(len(names), *shape, 4).mean(axis=(2, 4))
+        blocks.append(np.rint(coarse).astype(np.uint8).reshape(len(names), -1))
+        place[i, j] = total
+        total += blocks[-1].shape[1]
+    return Weave(np.concatenate(blocks, axis=1), place)
+
+
+@cache
+def tint(name: str) -> Float32[np.ndarray, "3"]:
+    """Average the colour of a material over its tile, 0..255."""
+    mean: np.ndarray = texture(name).mean(axis=(0, 1))
+    return mean.astype(np.float32)
