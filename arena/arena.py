@@ -29,6 +29,9 @@ CLEARANCE = 0.01
 """An odour source nearer than this (m) to a wall counts as inside it."""
 
 
+SPARSEST = 1e-4
+"""Share of its bounds below which free space takes too long to be found by chance."""
+
 Channel = Annotated[int, Field(strict=True, ge=0, le=255)]
 Colour = TypeAliasType("Colour", tuple[Channel, Channel, Channel])
 
@@ -169,7 +172,7 @@ class Arena(Part):
         Raises
         ------
         ArenaError
-            When a disc of this radius fits nowhere.
+            When a disc of this radius fits nowhere, or in places too far apart.
         """
         region = self.free_space(radius)
         if region.area < 1e-6:
@@ -179,6 +182,11 @@ class Arena(Part):
             )
         shapely.prepare(region)
         low, high = np.reshape(region.bounds, (2, 2))
+        if region.area < SPARSEST * np.prod(high - low):
+            raise ArenaError(
+                f"arena {self.name!r} has {region.area:.2g} m² of free space for a body of radius {radius:g} "
+                f"m, scattered over {high[0] - low[0]:g} by {high[1] - low[1]:g} m; bring its parts together"
+            )
         found = np.empty((0, 2))
         while len(found) < count:
             candidates = rng.uniform(low, high, (2 * count + 16, 2))
