@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
@@ -130,6 +131,10 @@ class Arena(Part):
             return cls.parse(text)
         except ArenaError as error:
             raise ArenaError(f"{path}: {error}") from None
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Arena:  # noqa: ARG002
+        """Copy the arena with some fields changed; the copy is checked like any other."""
+        return self.create(**{**self.model_dump(), **(update or {})})
 
     def to_toml(self) -> str:
         """Write the arena as TOML text that `parse` reads back to an equal arena."""
