@@ -108,7 +108,7 @@ def test_the_light_is_an_arrow_from_the_lamp() -> None:
 
 def test_a_textured_floor_is_in_the_legend() -> None:
     (legend,) = plot_room(Arena.load("linear_track")).legends
-    assert [text.get_text() for text in legend.get_texts()][:2] == ["platform", "floor of oak"]
+    assert [text.get_text() for text in legend.get_texts()][:2] == ["platform", "floor of marble"]
 
 
 def test_a_name_is_no_formula(pixel: Callable) -> None:
