@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
@@ -29,6 +30,9 @@ from arena.surfaces import Surfaces, surfaces
 CLEARANCE = 0.01
 """An odour source nearer than this (m) to a wall counts as inside it."""
 
+
+SPARSEST = 1e-4
+"""Share of its bounds below which free space takes too long to be found by chance."""
 
 Channel = Annotated[int, Field(strict=True, ge=0, le=255)]
 Colour = TypeAliasType("Colour", tuple[Channel, Channel, Channel])
@@ -129,6 +133,10 @@ class Arena(Part):
         except ArenaError as error:
             raise ArenaError(f"{path}: {error}") from None
 
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Arena:  # noqa: ARG002
+        """Copy the arena with some fields changed; the copy is checked like any other."""
+        return self.create(**{**self.model_dump(), **(update or {})})
+
     def to_toml(self) -> str:
         """Write the arena as TOML text that `parse` reads back to an equal arena."""
         return tomli_w.dumps(self.model_dump(mode="json", exclude_defaults=True))
@@ -170,7 +178,7 @@ class Arena(Part):
         Raises
         ------
         ArenaError
-            When a disc of this radius fits nowhere.
+            When a disc of this radius fits nowhere, or in places too far apart.
         """
         region = self.free_space(radius)
         if region.area < 1e-6:
@@ -180,6 +188,11 @@ class Arena(Part):
             )
         shapely.prepare(region)
         low, high = np.reshape(region.bounds, (2, 2))
+        if region.area < SPARSEST * np.prod(high - low):
+            raise ArenaError(
+                f"arena {self.name!r} has {region.area:.2g} m² of free space for a body of radius {radius:g} "
+                f"m, scattered over {high[0] - low[0]:g} by {high[1] - low[1]:g} m; bring its parts together"
+            )
         found = np.empty((0, 2))
         while len(found) < count:
             candidates = rng.uniform(low, high, (2 * count + 16, 2))

@@ -13,7 +13,7 @@ from arena.errors import ArenaError
 
 FAINTEST = 1e-30
 """Concentration where no odour arrives: positive, so that its logarithm and its float32 exist."""
-MOST_CELLS = 400_000
+MOST_CELLS = 250_000
 """Above this the factorisation takes more than a few seconds and a gigabyte."""
 
 _TAPS = np.arange(-1, 3)

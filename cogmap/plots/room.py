@@ -8,6 +8,7 @@ from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from matplotlib.patheffects import withStroke
 from shapely.geometry.base import BaseGeometry
 
 from arena.arena import Arena
@@ -127,6 +128,7 @@ def _draw_solid(axes: Axes, solid: Solid) -> None:
         rotation=90 if depth > width else 0,
         fontsize=TINY,
         color="white" if np.dot(lid, (0.3, 0.6, 0.1)) < 0.5 else INK,
+        path_effects=[withStroke(linewidth=2, foreground=lid)],
         clip_on=True,
         zorder=7,
     )
@@ -164,8 +166,9 @@ def _draw_light(axes: Axes, light: Light) -> None:
         textcoords="offset points",
         arrowprops={"arrowstyle": "-|>", "color": INK},
     )
+    said = f"light from {light.azimuth_deg:g}°,\n{light.elevation_deg:g}° up,\nstrength {light.strength:g}"
     axes.annotate(
-        f"light from {light.azimuth_deg:g}°,\n{light.elevation_deg:g}° up,\nstrength {light.strength:g}",
+        said.replace("-", "−"),
         BESIDE,
         (0, -8 if up > 0 else 8),
         xycoords="axes fraction",

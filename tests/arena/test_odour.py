@@ -156,6 +156,16 @@ def test_thin_box_stops_odour_too() -> None:
     assert field(solids=[box]).concentration(np.array([[0.5, 0.0]]))[0, 0] == pytest.approx(FAINTEST)
 
 
+def test_where_no_odour_arrives_does_not_spoil_what_is_on_this_side_of_the_wall() -> None:
+    odours = field([[(0, -2.5), (0, 2.5)]], sources=[(-1.5, -1.0)])
+    points = lattice((-0.5, -2.4, -0.03, 2.4), 0.0113)
+    wanted = exact(points, (-1.5, -1.0), (-3.0, -2.5, 0.0, 2.5), 1.5)[0]
+    np.testing.assert_allclose(odours.concentration(points)[:, 0], wanted, rtol=3e-3)
+    beyond = lattice((0.03, -2.4, 0.5, 2.4), 0.0113)
+    assert (odours.concentration(beyond) == odours.concentration(np.array([[2.0, 2.0]]))).all()
+    assert (odours.gradient(beyond) == 0).all()
+
+
 def test_source_beside_a_wall_stays_on_its_side() -> None:
     odours = field([[(0, -2.5), (0, 2.5)]], sources=[(-0.011, 0.3), (0.011, 0.3)])
     left, right = odours.concentration(np.array([[-0.5, 0.3], [0.5, 0.3]]))

@@ -74,6 +74,27 @@ def test_arena_shows_a_room(run, tmp_path: Path) -> None:
     refused(run("arena", "pillar", "--out", tmp_path / "room.png"), "exists already")
 
 
+def test_arena_writes_nothing_unasked_and_a_sheet_when_asked(
+    run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, out, _ = run("arena", "l_shape")
+    assert status == 0
+    assert "free_area_m2" in out
+    assert not list(tmp_path.iterdir())
+    assert run("arena", "l_shape", "--sheet", "sheet.png")[0] == 0
+    assert Path("sheet.png").read_bytes().startswith(b"\x89PNG")
+    refused(run("arena", "pillar", "--sheet", "sheet.png"), "exists already")
+    refused(run("arena", "pillar", "--out", tmp_path / "no" / "room.png"), "cannot write", "No such file")
+
+
+def test_arena_schema_needs_no_room(run) -> None:
+    status, out, _ = run("arena", "--schema")
+    assert status == 0
+    assert json.loads(out) == Arena.json_schema()
+    refused(run("arena"), "no room is given", "furnished")
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
