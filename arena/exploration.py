@@ -52,7 +52,7 @@ def explore(
     *,
     nose: Nose = _NOSE,
     body: Body = _BODY,
-    views: int = 17_000,
+    views: int | None = None,
     seed: int = 0,
     out: str | Path | None = None,
     progress: bool = False,
@@ -64,7 +64,7 @@ def explore(
     arena, motion, camera, nose, body
         The room, how to move, and the animal.
     views
-        How many to take.
+        How many to take; None takes what the motion does by default.
     seed
         Varies the walk and the nose's noise, never the room.
     out
@@ -78,7 +78,9 @@ def explore(
     ArenaError
         For a count or seed out of range, a body that does not fit, or an `out` that holds something else.
     """
-    if views < 1 or seed < 0:
+    if views is None:
+        views = motion.default_views
+    if (views is not None and views < 1) or seed < 0:
         raise ArenaError(f"views is {views} and seed is {seed}; give at least one view and no negative seed")
     attributes = {
         "version": storage.VERSION,
@@ -103,8 +105,10 @@ def explore(
         "times": walk.times,
         "poses": walk.poses,
     }
-    shape = (views, camera.height, camera.width, 3)
-    missing = storage.shards(views) if begun is None else begun.missing
+    count = len(walk.times)
+    attributes["walk"] = dict(walk.notes)
+    shape = (count, camera.height, camera.width, 3)
+    missing = storage.shards(count) if begun is None else begun.missing
     images: np.ndarray | zarr.Array[Any]
     if path is None:
         images = np.empty(shape, np.uint8)
@@ -117,8 +121,8 @@ def explore(
                 f"{path} was begun by a program that walks or smells otherwise; remove it and start again"
             )
         images = storage.writable_views(path, missing)
-    with tqdm(total=views, unit="view", disable=not progress) as bar:
-        bar.update(views - sum(rows.stop - rows.start for rows in missing))
+    with tqdm(total=count, unit="view", disable=not progress) as bar:
+        bar.update(count - sum(rows.stop - rows.start for rows in missing))
         for rows in missing:
             images[rows] = camera.render(arena, walk.poses[rows])
             bar.update(rows.stop - rows.start)
