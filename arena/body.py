@@ -26,9 +26,9 @@ class Drive:
 
     Each step gives a pymunk disc the velocity of the wheels and lets pymunk move it and find what it hits. A
     disc that overlaps a wall is pushed out along the shortest way, so it slides without friction; where that
-    fails, in a wedge or a gap narrower than the body, it stays where it was. Steps are divided so that none is
-    longer than a fifth of the radius: no wall is thin enough to be passed, and no gap is that is narrower than
-    the body by more than 0.5 %.
+    fails, in a wedge or in a gap too narrow for it, it stays where it was. Steps are divided so that none is
+    longer than a fifth of the radius: no wall is thin enough to be passed, nor any gap that is narrower than
+    the body by more than 1 % and `TOLERANCE`.
 
     Attributes
     ----------
@@ -139,7 +139,7 @@ class Drive:
 
 
 def _approach(now: float, goal: float, limit: float, dt: float) -> tuple[float, float]:
-    """Change at no more than limit a second towards the goal: where that is after dt, and the mean till then."""
+    """Change by no more than limit a second towards the goal: give what is reached in dt, and the mean."""
     change = goal - now
     needed = abs(change) / limit
     if needed < dt:

@@ -1,7 +1,7 @@
 """Ways of moving through an arena, one file each."""
 
 from collections.abc import Mapping
-from typing import ClassVar, NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -30,8 +30,10 @@ class Motion(Protocol):
     path; the body is free in each.
     """
 
-    default_views: ClassVar[int | None]
-    """How many `explore` takes unless told; None takes all there are."""
+    @property
+    def default_views(self) -> int | None:
+        """How many `explore` takes unless told; None takes all there are."""
+        ...
 
     def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
         """Move until this many views are taken.

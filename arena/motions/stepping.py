@@ -6,9 +6,11 @@ from typing import Annotated
 
 import numpy as np
 from pydantic import Field
+from shapely.geometry.base import BaseGeometry
 
 from arena.arena import Arena
 from arena.body import Body, Drive, Pose
+from arena.errors import ArenaError
 from arena.motions import Walk
 
 STEP = 0.05
@@ -23,7 +25,7 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 def look(drive: Drive, ways: Iterator[Way], views: int, *, spacing: float, angle: float) -> Walk:
-    """Take a view at the start and whenever the body has gone `spacing` m or turned `angle` rad since the last.
+    """Take a view at the start and after every `spacing` m or `angle` rad, whichever comes first.
 
     Parameters
     ----------
@@ -65,7 +67,7 @@ def bearing(pose: Pose, goal: tuple[float, float]) -> float:
 
 
 def go_to(drive: Drive, goal: tuple[float, float], speed: float) -> Iterator[Way]:
-    """Go to a goal (m) straight ahead at a speed (m/s), until there or behind it, or until something is hit."""
+    """Go to a goal (m) straight ahead at a speed (m/s), until there, past it, or something is hit."""
     while True:
         pose = drive.pose
         left, error = math.dist(pose[:2], goal), bearing(pose, goal)
@@ -73,6 +75,23 @@ def go_to(drive: Drive, goal: tuple[float, float], speed: float) -> Iterator[Way
             return
         drive.step(min(speed, left / STEP), error / STEP, STEP)
         yield drive.speed * STEP, abs(drive.turn) * STEP
+
+
+def free_space(arena: Arena, body: Body) -> BaseGeometry:
+    """Give the places of the body's centre.
+
+    Raises
+    ------
+    ArenaError
+        When the body fits nowhere.
+    """
+    region = arena.free_space(body.radius)
+    if region.area < 1e-6:
+        raise ArenaError(
+            f"a body of radius {body.radius:g} m has no free space in arena {arena.name!r}; "
+            "take a smaller one"
+        )
+    return region
 
 
 def random_start(arena: Arena, body: Body, rng: np.random.Generator) -> Pose:
