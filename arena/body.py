@@ -32,6 +32,8 @@ class Drive:
 
     Attributes
     ----------
+    body
+        Whose body this is.
     speed, turn
         What the wheels do at the end of the last step, m/s and rad/s; at a wall they slip.
     contact
@@ -43,7 +45,7 @@ class Drive:
     contact: float | None = None
 
     def __init__(self, body: "Body", arena: Arena, pose: Pose) -> None:
-        self._radius = body.radius
+        self.body = body
         self._max_speed, self._max_turn = body.max_speed, body.max_turn
         self._acceleration, self._turn_acceleration = body.max_acceleration, body.max_turn_acceleration
         self._heading = pose[2]
@@ -94,7 +96,7 @@ class Drive:
         else:
             self.turn, turn = _approach(self.turn, turn, self._turn_acceleration, dt)
         disc = self._disc
-        parts = max(1, math.ceil(_PARTS_A_RADIUS * abs(speed) * dt / self._radius))
+        parts = max(1, math.ceil(_PARTS_A_RADIUS * abs(speed) * dt / self.body.radius))
         dt /= parts
         self.contact = None
         for _ in range(parts):
@@ -123,11 +125,11 @@ class Drive:
         self._overlaps = False
         x0, y0 = x, y = self._disc.position
         for _ in range(_PUSHES):
-            wall = self._space.point_query_nearest((x, y), self._radius - _CLOSE, self._others)
+            wall = self._space.point_query_nearest((x, y), self.body.radius - _CLOSE, self._others)
             if wall is None:
                 break
             px, py = wall.point
-            stretch = self._radius / max(wall.distance, _CLOSE * self._radius)
+            stretch = self.body.radius / max(wall.distance, _CLOSE * self.body.radius)
             x, y = px + stretch * (x - px), py + stretch * (y - py)
         # Pushes shorten a way along walls; one that they lengthen was squeezed through a gap.
         squeezed = math.hypot(x - x0 + dx, y - y0 + dy) > 1.01 * math.hypot(dx, dy) + TOLERANCE

@@ -1,7 +1,7 @@
 """Back to the source of an odour, again and again."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -23,10 +23,12 @@ class Chemotaxis(Settings):
     """Climbs one odour to its maximum, spins there, is pushed away in a random direction, and climbs again.
 
     A climb goes by strides along the gradient, quartered whenever one no longer smells stronger, and sliding
-    along walls. Where it gets stuck at less than the strongest smell met so far, the body is pushed at once.
+    along walls. Pushed against a wall the body bounces off. Stuck where it smells much less than at the
+    strongest maximum so far it is pushed at once.
 
     The views at the maximum form a ring. Which they are stands in the notes of the walk: `at_maximum` holds
-    the first view of each stay and the one after its last.
+    the first view of each stay and the one after its last, without those at a much weaker maximum, found
+    before the stronger one.
 
     Parameters
     ----------
@@ -79,28 +81,29 @@ class Chemotaxis(Settings):
                 "count them from 0"
             )
         drive = body.place(arena, self.start or random_start(arena, body, rng))
-        stays: list[tuple[int, int]] = []
+        stays: list[tuple[float, int, int]] = []
         ways = _counted(self._legs(drive, body, arena.odours, rng), stays)
         walk = look(drive, ways, views or self.default_views, spacing=self.spacing, angle=self.angle)
+        strength, first, last = np.reshape(stays, (-1, 3)).T
         steps = np.rint(walk.times / STEP)
-        begin = np.searchsorted(steps, [first for first, _ in stays])
-        end = np.searchsorted(steps, [last for _, last in stays], side="right")
-        return walk._replace(notes={"at_maximum": np.stack([begin, end], axis=1).tolist()})
+        spans = np.stack([np.searchsorted(steps, first), np.searchsorted(steps, last, "right")], axis=1)
+        return walk._replace(
+            notes={"at_maximum": spans[strength > ENOUGH * strength.max(initial=0)].tolist()}
+        )
 
     def _legs(
         self, drive: Drive, body: Body, odours: OdourField, rng: np.random.Generator
-    ) -> Iterator[tuple[bool, Iterator[Way]]]:
-        """Give one leg of the way after the other, and whether it is a stay at the maximum."""
+    ) -> Iterator[tuple[float | None, Iterator[Way]]]:
+        """Give the legs of the way, one by one, and how strong it smells where one is a stay at a maximum."""
         pace, speed = min(self.pace, body.max_turn), min(self.speed, body.max_speed)
         strongest = 0.0
         while True:
-            yield False, self._climb(drive, odours, pace, speed)
+            yield None, self._climb(drive, odours, pace, speed)
             strength, _ = self._smell(drive, odours)
             if strength > ENOUGH * strongest:
                 strongest = max(strength, strongest)
-                yield True, turn_by(drive, rng.choice([-1, 1]) * 2 * math.pi, pace)
-            yield False, turn_by(drive, rng.uniform(-math.pi, math.pi), pace)
-            yield False, _run(drive, self.push * rng.uniform(0.5, 1.5), speed, slide=False)
+                yield strength, turn_by(drive, rng.choice([-1, 1]) * (2 * math.pi + self.angle), pace)
+            yield None, self._go_away(drive, pace, speed, rng)
 
     def _climb(self, drive: Drive, odours: OdourField, pace: float, speed: float) -> Iterator[Way]:
         stride = self.stride
@@ -113,6 +116,14 @@ class Chemotaxis(Settings):
             if strength <= before or math.dist((x, y), drive.pose[:2]) < 0.02 * stride:
                 stride *= 0.25
 
+    def _go_away(self, drive: Drive, pace: float, speed: float, rng: np.random.Generator) -> Iterator[Way]:
+        left, angle = self.push * rng.uniform(0.5, 1.5), rng.uniform(-math.pi, math.pi)
+        while left > 1e-9:
+            yield from turn_by(drive, angle, pace)
+            left = yield from _run(drive, left, speed, slide=False)
+            away = drive.pose[2] if drive.contact is None else drive.contact
+            angle = math.remainder(away + rng.uniform(-0.5, 0.5) * math.pi - drive.pose[2], 2 * math.pi)
+
     def _smell(self, drive: Drive, odours: OdourField) -> tuple[float, float]:
         """Give the concentration at the nose, and the direction (rad) in which it rises."""
         xy = np.array([drive.pose[:2]])
@@ -120,20 +131,24 @@ class Chemotaxis(Settings):
         return odours.concentration(xy)[0, self.odorant].item(), math.atan2(climb, rise)
 
 
-def _run(drive: Drive, length: float, speed: float, *, slide: bool) -> Iterator[Way]:
+def _run(drive: Drive, length: float, speed: float, *, slide: bool) -> Generator[Way, None, float]:
+    """Go straight ahead for a length (m), sliding along walls or stopping there; give what is left of it."""
     while length > 1e-9 and (slide or drive.contact is None):
         drive.step(min(speed, length / STEP), 0.0, STEP)
         yield drive.speed * STEP, abs(drive.turn) * STEP
         length -= drive.speed * STEP
+    return length
 
 
-def _counted(legs: Iterator[tuple[bool, Iterator[Way]]], stays: list[tuple[int, int]]) -> Iterator[Way]:
-    """Join legs, noting the steps between which the stays last."""
+def _counted(
+    legs: Iterator[tuple[float | None, Iterator[Way]]], stays: list[tuple[float, int, int]]
+) -> Iterator[Way]:
+    """Join legs; note of every stay how strong it smells and the steps between which it lasts."""
     step = 0
-    for stays_there, leg in legs:
+    for strength, leg in legs:
         first = step
         for way in leg:
             step += 1
             yield way
-        if stays_there:
-            stays.append((first, step))
+        if strength is not None:
+            stays.append((strength, first, step))

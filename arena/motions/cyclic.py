@@ -7,11 +7,11 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
-from arena.arena import Arena, Point
+from arena.arena import Arena
 from arena.body import Body, Drive
 from arena.motions import Walk
 from arena.motions.corridor import corridor
-from arena.motions.stepping import Positive, Spread, Way, bearing, go_to, look, turn_by
+from arena.motions.stepping import Place, Positive, Spread, Way, bearing, go_to, look, turn_by
 from arena.settings import Settings
 
 
@@ -45,7 +45,7 @@ class Cyclic(Settings):
 
     default_views: ClassVar[int] = 4_000
 
-    ends: tuple[Point, Point] | None = None
+    ends: tuple[Place, Place] | None = None
     width: Spread = 0.1
     passes: Annotated[int, Field(ge=1, le=1000)] = 3
     speed: Positive = 0.4
@@ -69,8 +69,8 @@ class Cyclic(Settings):
         return look(drive, ways, views, spacing=self.spacing, angle=self.angle)
 
     def _corners(
-        self, start: Point, end: Point, room: float, spins: int, rng: np.random.Generator
-    ) -> Iterator[Point]:
+        self, start: Place, end: Place, room: float, spins: int, rng: np.random.Generator
+    ) -> Iterator[Place]:
         along = np.subtract(end, start)
         across = np.array([-along[1], along[0]]) / np.hypot(*along)
         while True:
@@ -80,7 +80,7 @@ class Cyclic(Settings):
                     x, y = start + share * along + side * across
                     yield float(x), float(y)
 
-    def _zigzag(self, drive: Drive, body: Body, corners: Iterator[Point]) -> Iterator[Way]:
+    def _zigzag(self, drive: Drive, body: Body, corners: Iterator[Place]) -> Iterator[Way]:
         pace, speed = min(self.pace, body.max_turn), min(self.speed, body.max_speed)
         for corner in corners:
             face = bearing(drive.pose, corner)

@@ -9,12 +9,12 @@ from jaxtyping import Float, Int
 from pydantic import Field, PlainSerializer, model_validator
 from shapely.geometry.base import BaseGeometry
 
-from arena.arena import Arena, Point
+from arena.arena import Arena
 from arena.body import TOLERANCE, Body
 from arena.errors import ArenaError
 from arena.motions import Walk
 from arena.motions.paths import RecordedPath, read_path
-from arena.motions.stepping import free_space
+from arena.motions.stepping import Place, free_space
 from arena.settings import Settings
 
 LATE = 1.5
@@ -63,7 +63,7 @@ class Replay(Settings):
 
     path: Annotated[Path, PlainSerializer(str)]
     scale: _Above = 1.0
-    offset: Point = (0.0, 0.0)
+    offset: Place = (0.0, 0.0)
     fit: bool = False
     clip: bool = False
     interval: _Above | None = None

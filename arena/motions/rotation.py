@@ -10,7 +10,7 @@ from pydantic import Field
 from arena.arena import Arena
 from arena.body import Body
 from arena.motions import Walk
-from arena.motions.stepping import STEP, Positive, Share, free_space
+from arena.motions.stepping import STEP, Place, Positive, Share, free_space
 from arena.settings import Settings
 
 
@@ -41,7 +41,7 @@ class Rotation(Settings):
 
     default_views: ClassVar[int] = 5_000
 
-    position: tuple[float, float] | None = None
+    position: Place | None = None
     turns: Annotated[int, Field(ge=1, le=10_000)] = 10
     jitter: Share = 1.0
     pace: Positive = 1.75
@@ -72,7 +72,7 @@ class Rotation(Settings):
         return Walk(times, poses)
 
 
-def _middle(arena: Arena, body: Body) -> tuple[float, float]:
+def _middle(arena: Arena, body: Body) -> Place:
     middle = shapely.union_all([shapely.Polygon(corners) for corners in arena.platform]).centroid
     nearest = shapely.shortest_line(free_space(arena, body), middle).coords[0]
     return nearest[0], nearest[1]

@@ -15,6 +15,11 @@ from arena.motions import Walk
 
 STEP = 0.05
 """Length of a physics step, s."""
+STEER = 2.0
+"""Turn rate per error of heading, 1/s: so slow that a body that misses its goal passes it, not orbits it."""
+
+Place = tuple[float, float]
+"""x and y in m."""
 
 Way = tuple[float, float]
 """How far a step went (m) and turned (rad), neither negative."""
@@ -58,22 +63,34 @@ def turn_by(drive: Drive, angle: float, pace: float) -> Iterator[Way]:
         drive.step(0.0, turn / STEP, STEP)
         yield 0.0, abs(turn)
         angle -= turn
+    # What a slow body turned too little while it sped up it turns while it stops.
+    yield from _rest(drive)
 
 
-def bearing(pose: Pose, goal: tuple[float, float]) -> float:
+def bearing(pose: Pose, goal: Place) -> float:
     """By how much to turn (rad, the short way) to face a goal (m)."""
     x, y, heading = pose
     return math.remainder(math.atan2(goal[1] - y, goal[0] - x) - heading, 2 * math.pi)
 
 
-def go_to(drive: Drive, goal: tuple[float, float], speed: float) -> Iterator[Way]:
+def go_to(drive: Drive, goal: Place, speed: float) -> Iterator[Way]:
     """Go to a goal (m) straight ahead at a speed (m/s), until there, past it, or something is hit."""
+    braking = 2 * (drive.body.max_acceleration or math.inf)
     while True:
         pose = drive.pose
         left, error = math.dist(pose[:2], goal), bearing(pose, goal)
-        if left < 1e-9 or abs(error) > 0.5 * math.pi or drive.contact is not None:
-            return
-        drive.step(min(speed, left / STEP), error / STEP, STEP)
+        if left < 1e-6 or abs(error) > 0.5 * math.pi or drive.contact is not None:
+            break
+        drive.step(min(speed, left / STEP, math.sqrt(braking * left)), STEER * error, STEP)
+        yield drive.speed * STEP, abs(drive.turn) * STEP
+    yield from _rest(drive)
+
+
+def _rest(drive: Drive) -> Iterator[Way]:
+    """Let a body that cannot stop at once come to rest."""
+    body = drive.body
+    while (body.max_acceleration and drive.speed) or (body.max_turn_acceleration and drive.turn):
+        drive.step(0.0, 0.0, STEP)
         yield drive.speed * STEP, abs(drive.turn) * STEP
 
 

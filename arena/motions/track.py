@@ -6,11 +6,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from arena.arena import Arena, Point
+from arena.arena import Arena
 from arena.body import Body, Drive
 from arena.motions import Walk
 from arena.motions.corridor import corridor
-from arena.motions.stepping import Positive, Spread, Way, bearing, go_to, look, turn_by
+from arena.motions.stepping import Place, Positive, Spread, Way, bearing, go_to, look, turn_by
 from arena.settings import Settings
 
 ROOM = 0.02
@@ -20,7 +20,7 @@ ROOM = 0.02
 class Track(Settings):
     """Runs straight from one end to the other and back, with a turn to either side at random at each end.
 
-    The speed varies from run to run, so that no two runs see the same.
+    The speed varies from run to run, and where it ends by `spacing`, so that no two runs see the same.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class Track(Settings):
 
     default_views: ClassVar[int] = 2_000
 
-    ends: tuple[Point, Point] | None = None
+    ends: tuple[Place, Place] | None = None
     speed: Positive = 0.4
     speed_spread: Spread = 0.1
     pace: Positive = 1.75
@@ -62,12 +62,14 @@ class Track(Settings):
         return look(drive, ways, views or self.default_views, spacing=self.spacing, angle=self.angle)
 
     def _runs(
-        self, drive: Drive, body: Body, ends: tuple[Point, Point], rng: np.random.Generator
+        self, drive: Drive, body: Body, ends: tuple[Place, Place], rng: np.random.Generator
     ) -> Iterator[Way]:
         here, there = ends
         while True:
             speed = min(body.max_speed, max(0.2 * self.speed, rng.normal(self.speed, self.speed_spread)))
-            yield from go_to(drive, there, speed)
+            short = rng.random() * min(0.5, self.spacing / math.dist(here, there))
+            x, y = (b + short * (a - b) for a, b in zip(here, there, strict=True))
+            yield from go_to(drive, (x, y), speed)
             here, there = there, here
             back, side = bearing(drive.pose, there), rng.choice([-1, 1])
             yield from turn_by(drive, side * (side * back % (2 * math.pi)), min(self.pace, body.max_turn))
