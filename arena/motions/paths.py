@@ -2,6 +2,7 @@
 
 import csv
 import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -12,6 +13,8 @@ from jaxtyping import Float, Int
 from arena.errors import ArenaError
 
 _NAMES = ("t", "x", "y", "heading", "heading_deg")
+# What numpy has been seen to raise on archives that are no archives, or cut short.
+_DAMAGE = (ValueError, LookupError, RuntimeError, EOFError, csv.Error, zipfile.BadZipFile, zlib.error)
 
 
 class RecordedPath(NamedTuple):
@@ -42,10 +45,14 @@ def read_path(path: Path) -> RecordedPath:
         raise ArenaError(f"{path} is neither a .csv nor a .npz file; a recorded path must be one of them")
     try:
         columns, rows = readers[path.suffix](path)
+    except ArenaError:
+        raise
     except OSError as error:
         raise ArenaError(f"cannot read the path {path}: {error.strerror or error}") from None
-    except (UnicodeDecodeError, csv.Error, zipfile.BadZipFile, EOFError):
-        raise ArenaError(f"cannot read the path {path}: it is damaged or of another kind") from None
+    except _DAMAGE:
+        raise ArenaError(
+            f"cannot read the path {path}: it is damaged, of another kind or holds Python objects"
+        ) from None
     missing = [name for name in ("t", "x", "y") if name not in columns]
     if missing:
         raise ArenaError(
@@ -107,11 +114,10 @@ def _read_csv(path: Path) -> tuple[dict[str, np.ndarray], Int[np.ndarray, " samp
 
 
 def _read_npz(path: Path) -> tuple[dict[str, np.ndarray], Int[np.ndarray, " samples"]]:
-    try:
+    with zipfile.ZipFile(path):  # An NPY file by the name of NPZ would load too.
         loaded = np.load(path, allow_pickle=False)
+    with loaded:
         arrays = {name: loaded[name] for name in (*_NAMES, "pos") if name in loaded}
-    except ValueError:
-        raise ArenaError(f"{path} holds Python objects or is no NPZ file; save plain arrays") from None
     if "pos" in arrays:
         pos = arrays.pop("pos")
         if pos.ndim != 2 or pos.shape[1] != 2:
