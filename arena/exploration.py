@@ -105,10 +105,10 @@ def explore(
         "times": walk.times,
         "poses": walk.poses,
     }
-    count = len(walk.times)
     attributes["walk"] = dict(walk.notes)
-    shape = (count, camera.height, camera.width, 3)
-    missing = storage.shards(count) if begun is None else begun.missing
+    views = len(walk.times)
+    shape = (views, camera.height, camera.width, 3)
+    missing = storage.shards(views) if begun is None else begun.missing
     images: np.ndarray | zarr.Array[Any]
     if path is None:
         images = np.empty(shape, np.uint8)
@@ -121,8 +121,8 @@ def explore(
                 f"{path} was begun by a program that walks or smells otherwise; remove it and start again"
             )
         images = storage.writable_views(path, missing)
-    with tqdm(total=count, unit="view", disable=not progress) as bar:
-        bar.update(count - sum(rows.stop - rows.start for rows in missing))
+    with tqdm(total=views, unit="view", disable=not progress) as bar:
+        bar.update(views - sum(rows.stop - rows.start for rows in missing))
         for rows in missing:
             images[rows] = camera.render(arena, walk.poses[rows])
             bar.update(rows.stop - rows.start)

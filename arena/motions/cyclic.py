@@ -14,6 +14,9 @@ from arena.motions.corridor import corridor
 from arena.motions.stepping import Place, Positive, Spread, Way, bearing, go_to, look, turn_by
 from arena.settings import Settings
 
+FACING = 0.6
+"""How much more than a full spin it takes to face the next corner, on average, rad."""
+
 
 class Cyclic(Settings):
     """Zigzags along a straight way with a full spin at every corner, to the end and back.
@@ -64,7 +67,7 @@ class Cyclic(Settings):
         views = views or self.default_views
         start, end, room = corridor(arena, body, self.width / 2, self.ends)
         drive = body.place(arena, (*start, rng.uniform(-np.pi, np.pi)))
-        spins = max(1, round(views * self.angle / (2 * np.pi) / self.passes))
+        spins = max(1, round(views * self.angle / (2 * np.pi + FACING) / self.passes))
         ways = self._zigzag(drive, body, self._corners(start, end, room, spins, rng))
         return look(drive, ways, views, spacing=self.spacing, angle=self.angle)
 
