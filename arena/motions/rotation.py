@@ -73,6 +73,5 @@ class Rotation(Settings):
 
 
 def _middle(arena: Arena, body: Body) -> Place:
-    middle = shapely.union_all([shapely.Polygon(corners) for corners in arena.platform]).centroid
-    nearest = shapely.shortest_line(free_space(arena, body), middle).coords[0]
+    nearest = shapely.shortest_line(free_space(arena, body), arena.walkable.centroid).coords[0]
     return nearest[0], nearest[1]

@@ -13,7 +13,15 @@ from matplotlib.figure import Figure
 from arena.arena import Arena
 from cogmap.cells.checks import check_array
 from cogmap.plots.room import draw_surfaces
-from cogmap.plots.style import QUARTERS, colour_bar, direction_colours, direction_scale, new_figure, tidy_room
+from cogmap.plots.style import (
+    INK,
+    QUARTERS,
+    colour_bar,
+    direction_colours,
+    direction_scale,
+    new_figure,
+    tidy_room,
+)
 
 STROKES = 3000
 """Headings drawn at most: of more nothing could be seen."""
@@ -24,8 +32,8 @@ def plot_walk(
 ) -> Figure:
     """Draw a walk over its room, coloured by time and, beside it, by heading.
 
-    The way from view to view is a line of the colour of its time. At each view, or at 3,000 evenly chosen
-    ones, a short stroke starts that points where the body looks.
+    The way from view to view is a line of the colour of its time, the first view a dot. At each view, or at
+    up to 3,000 evenly chosen ones, a short stroke starts that points where the body looks.
 
     Parameters
     ----------
@@ -59,6 +67,7 @@ def plot_walk(
     left.add_collection(
         LineCollection(list(ways), colors=clock.to_rgba(times[:-1]), linewidths=0.6, zorder=1)
     )
+    left.plot(*poses[0, :2], "o", color=INK, markersize=4, zorder=2)
     colour_bar(left, clock, "time (s)")
     stroke = 0.02 * max(x1 - x0, y1 - y0) * np.stack([np.cos(chosen[:, 2]), np.sin(chosen[:, 2])], axis=1)
     strokes = np.stack([chosen[:, :2], chosen[:, :2] + stroke], axis=1)
