@@ -58,6 +58,17 @@ def test_it_finds_its_way_around_what_is_in_the_way(blocked: Arena, start: tuple
     assert (np.diff(smelt) > -0.05 * smelt[1:]).mean() > 0.9
 
 
+@pytest.mark.parametrize("name", ["l_shape", "obstacles", "pillar", "two_rooms"])
+def test_from_everywhere(name: str) -> None:
+    arena = Arena.load(name)
+    for odorant in range(len(arena.sources)):
+        goal = peak(arena, odorant)
+        for x, y in arena.sample_free(8, 0.18, np.random.default_rng(odorant)).tolist():
+            walk = climb(Chemotaxis(odorant=odorant, start=(x, y, 0.0)), 150, arena)
+            first = walk.notes["at_maximum"][0][0]
+            assert np.hypot(*(walk.poses[first, :2] - goal)) < 0.03
+
+
 def test_it_is_pushed_in_all_directions() -> None:
     arena = Arena.load("open_field")
     walk = climb(

@@ -16,6 +16,7 @@ from arena import (
     Motion,
     Rotation,
     Track,
+    gallery,
 )
 
 MOTIONS = [Brownian(), Rotation(), Cyclic(), Chemotaxis(), Track()]
@@ -64,6 +65,16 @@ def test_every_pose_is_free(
     assert (np.diff(walk.times) >= 0).all()
     assert walk.times[0] == 0 or name(motion) == "Rotation"
     assert (np.abs(walk.poses[:, 2]) <= np.pi).all()
+
+
+@pytest.mark.parametrize("room", gallery())
+@pytest.mark.parametrize("motion", MOTIONS, ids=name)
+def test_every_room_of_the_gallery_can_be_walked(motion: Motion, room: str) -> None:
+    arena = Arena.load(room)
+    poses = motion.walk(arena, Body(), 400, np.random.default_rng(0)).poses
+    assert shapely.distance(arena.free_space(0.18), shapely.points(poses[:, :2])).max() < 1e-3
+    if name(motion) in {"Cyclic", "Track"}:
+        assert np.hypot(*np.ptp(poses[:, :2], axis=0)) > 1.5
 
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=name)
