@@ -8,6 +8,11 @@ from arena.exploration import explore
 from arena.light import Light
 from arena.motions import Motion, Walk
 from arena.motions.brownian import Brownian
+from arena.motions.chemotaxis import Chemotaxis
+from arena.motions.cyclic import Cyclic
+from arena.motions.replay import Replay
+from arena.motions.rotation import Rotation
+from arena.motions.track import Track
 from arena.nose import Nose
 from arena.odour import OdourField
 from arena.parts import Block, Box, Pillar, Source, Wall
@@ -21,13 +26,18 @@ __all__ = [
     "Box",
     "Brownian",
     "Camera",
+    "Chemotaxis",
+    "Cyclic",
     "Light",
     "Motion",
     "Nose",
     "OdourField",
     "Pillar",
     "Recording",
+    "Replay",
+    "Rotation",
     "Source",
+    "Track",
     "Walk",
     "Wall",
     "explore",

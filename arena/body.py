@@ -15,6 +15,7 @@ TOLERANCE = 1e-3
 """How far (m) a start may reach beyond free space; a step never reaches beyond it by more than `_CLOSE`."""
 _CLOSE = 1e-6
 _PUSHES = 20
+_PARTS_A_RADIUS = 5
 
 Pose = tuple[float, float, float]
 """x and y in m, heading in rad."""
@@ -23,21 +24,30 @@ Pose = tuple[float, float, float]
 class Drive:
     """A body at large in an arena; `Body.place` makes one.
 
-    Each step gives a pymunk disc the velocity asked for and lets pymunk move it and find what it hits. A disc
-    that overlaps a wall is pushed out along the shortest way, so it slides without friction; where that
-    fails, in a wedge, it stays where it was. Steps are divided so that none is longer than half the radius:
-    no wall is thin enough to be passed.
+    Each step gives a pymunk disc the velocity of the wheels and lets pymunk move it and find what it hits. A
+    disc that overlaps a wall is pushed out along the shortest way, so it slides without friction; where that
+    fails, in a wedge or in a gap too narrow for it, it stays where it was. Steps are divided so that none is
+    longer than a fifth of the radius: no wall is thin enough to be passed, nor any gap that is narrower than
+    the body by more than 1 % and `TOLERANCE`.
 
     Attributes
     ----------
+    body
+        Whose body this is.
+    speed, turn
+        What the wheels do at the end of the last step, m/s and rad/s; at a wall they slip.
     contact
         Direction (rad) from what the last step touched towards the body, else None.
     """
 
+    speed: float = 0.0
+    turn: float = 0.0
     contact: float | None = None
 
     def __init__(self, body: "Body", arena: Arena, pose: Pose) -> None:
-        self._body = body
+        self.body = body
+        self._max_speed, self._max_turn = body.max_speed, body.max_turn
+        self._acceleration, self._turn_acceleration = body.max_acceleration, body.max_turn_acceleration
         self._heading = pose[2]
         self._space = arena.space()
         self._disc = pymunk.Body(mass=1.0, moment=math.inf)
@@ -56,7 +66,9 @@ class Drive:
         return x, y, math.pi - (math.pi - self._heading) % (2 * math.pi)
 
     def step(self, speed: float, turn: float, dt: float) -> bool:
-        """Move for dt (s) at a speed (m/s) and a turn rate (rad/s), each cut to what the body can do.
+        """Move for dt (s), approaching a speed (m/s) and a turn rate (rad/s) as the body can.
+
+        Both commands are cut to what the body can do at most, and approached within its accelerations.
 
         Returns
         -------
@@ -73,10 +85,18 @@ class Drive:
                 f"cannot step at speed {speed} m/s and turn {turn} rad/s for {dt} s; "
                 "give finite numbers and dt > 0"
             )
-        body, disc = self._body, self._disc
-        speed = max(-body.max_speed, min(body.max_speed, speed))
-        turn = max(-body.max_turn, min(body.max_turn, turn))
-        parts = max(1, math.ceil(2 * abs(speed) * dt / body.radius))
+        speed = max(-self._max_speed, min(self._max_speed, speed))
+        turn = max(-self._max_turn, min(self._max_turn, turn))
+        if self._acceleration is None:
+            self.speed = speed
+        else:
+            self.speed, speed = _approach(self.speed, speed, self._acceleration, dt)
+        if self._turn_acceleration is None:
+            self.turn = turn
+        else:
+            self.turn, turn = _approach(self.turn, turn, self._turn_acceleration, dt)
+        disc = self._disc
+        parts = max(1, math.ceil(_PARTS_A_RADIUS * abs(speed) * dt / self.body.radius))
         dt /= parts
         self.contact = None
         for _ in range(parts):
@@ -103,20 +123,31 @@ class Drive:
 
     def _push_out(self, dx: float, dy: float) -> None:
         self._overlaps = False
-        radius = self._body.radius
         x0, y0 = x, y = self._disc.position
         for _ in range(_PUSHES):
-            wall = self._space.point_query_nearest((x, y), radius - _CLOSE, self._others)
+            wall = self._space.point_query_nearest((x, y), self.body.radius - _CLOSE, self._others)
             if wall is None:
                 break
             px, py = wall.point
-            stretch = radius / wall.distance
+            stretch = self.body.radius / max(wall.distance, _CLOSE * self.body.radius)
             x, y = px + stretch * (x - px), py + stretch * (y - py)
-        else:
+        # Pushes shorten a way along walls; one that they lengthen was squeezed through a gap.
+        squeezed = math.hypot(x - x0 + dx, y - y0 + dy) > 1.01 * math.hypot(dx, dy) + TOLERANCE
+        if wall is not None or squeezed:
             x, y = x0 - dx, y0 - dy
         if (x, y) != (x0, y0):
             self._disc.position = x, y
             self.contact = math.atan2(y - y0, x - x0)
+
+
+def _approach(now: float, goal: float, limit: float, dt: float) -> tuple[float, float]:
+    """Change by no more than limit a second towards the goal: give what is reached in dt, and the mean."""
+    change = goal - now
+    needed = abs(change) / limit
+    if needed < dt:
+        return goal, goal - 0.5 * change * needed / dt
+    end = now + math.copysign(limit * dt, change)
+    return end, 0.5 * (now + end)
 
 
 class Body(Settings):
@@ -130,6 +161,10 @@ class Body(Settings):
         m/s, forwards and backwards.
     max_turn
         rad/s, either way.
+    max_acceleration, max_turn_acceleration
+        m/s² and rad/s²; None obeys at once. The Turtlebot 2 is usually driven at 1 m/s² and 2 rad/s².
+    wheel_base
+        Distance between the wheels, m.
 
     Raises
     ------
@@ -140,6 +175,18 @@ class Body(Settings):
     radius: Annotated[float, Field(gt=0, le=1e3)] = 0.18
     max_speed: Annotated[float, Field(gt=0, le=1e3)] = 0.65
     max_turn: Annotated[float, Field(gt=0, le=1e3)] = np.pi
+    max_acceleration: Annotated[float, Field(gt=0, le=1e6)] | None = None
+    max_turn_acceleration: Annotated[float, Field(gt=0, le=1e6)] | None = None
+    wheel_base: Annotated[float, Field(gt=0, le=1e3)] = 0.23
+
+    def from_wheels(self, left: float, right: float) -> tuple[float, float]:
+        """Turn the speeds of the wheels' rims (m/s) into the speed (m/s) and turn rate (rad/s) of the body.
+
+        >>> speed, turn = Body(wheel_base=0.2).from_wheels(0.1, 0.3)
+        >>> round(speed, 12), round(turn, 12)
+        (0.2, 1.0)
+        """
+        return 0.5 * (left + right), (right - left) / self.wheel_base
 
     def place(self, arena: Arena, pose: Pose) -> Drive:
         """Put the body into an arena.

@@ -52,7 +52,7 @@ def explore(
     *,
     nose: Nose = _NOSE,
     body: Body = _BODY,
-    views: int = 17_000,
+    views: int | None = None,
     seed: int = 0,
     out: str | Path | None = None,
     progress: bool = False,
@@ -64,7 +64,7 @@ def explore(
     arena, motion, camera, nose, body
         The room, how to move, and the animal.
     views
-        How many to take.
+        How many to take; None takes what the motion does by default.
     seed
         Varies the walk and the nose's noise, never the room.
     out
@@ -78,7 +78,9 @@ def explore(
     ArenaError
         For a count or seed out of range, a body that does not fit, or an `out` that holds something else.
     """
-    if views < 1 or seed < 0:
+    if views is None:
+        views = motion.default_views
+    if (views is not None and views < 1) or seed < 0:
         raise ArenaError(f"views is {views} and seed is {seed}; give at least one view and no negative seed")
     attributes = {
         "version": storage.VERSION,
@@ -103,6 +105,8 @@ def explore(
         "times": walk.times,
         "poses": walk.poses,
     }
+    attributes["walk"] = dict(walk.notes)
+    views = len(walk.times)
     shape = (views, camera.height, camera.width, 3)
     missing = storage.shards(views) if begun is None else begun.missing
     images: np.ndarray | zarr.Array[Any]

@@ -12,6 +12,7 @@ import torch
 from sklearn.decomposition import IncrementalPCA
 
 from arena import Arena, Camera
+from benchmarks.walking import walking
 from cogmap.tables import as_table
 from cogmap.threads import one_thread
 from neurons.oja import Sanger
@@ -102,7 +103,7 @@ def code() -> dict[str, float]:
 
 def main() -> None:
     """Measure one after the other."""
-    figures = {"rendering": rendering(), "depth": depth(), "code": code()}
+    figures = {"walking": walking(), "rendering": rendering(), "depth": depth(), "code": code()}
     sys.stderr.write(as_table(figures) + "\n")
     sys.stdout.write(json.dumps(figures, indent=2) + "\n")
 

@@ -4,15 +4,32 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import cyclopts
 import numpy as np
 from cyclopts import App, Parameter
 from matplotlib.figure import Figure
 
-from arena import Arena, ArenaError, Body, Brownian, Camera, Nose, Recording, explore, gallery
+from arena import (
+    Arena,
+    ArenaError,
+    Body,
+    Brownian,
+    Camera,
+    Chemotaxis,
+    Cyclic,
+    Motion,
+    Nose,
+    Recording,
+    Replay,
+    Rotation,
+    Track,
+    explore,
+    gallery,
+)
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.experiments.demo import demo
@@ -30,6 +47,15 @@ app = App(
 
 Json = Annotated[bool, Parameter(name="--json", negative="", help="Print metrics as JSON on stdout.")]
 Seed = Annotated[int, Parameter(help="Of everything random; the same seed gives the same arrays.")]
+
+MOTIONS: dict[str, Callable[..., Motion]] = {
+    "brownian": Brownian,
+    "rotation": Rotation,
+    "cyclic": Cyclic,
+    "chemotaxis": Chemotaxis,
+    "track": Track,
+    "replay": Replay,
+}
 
 
 def main() -> None:
@@ -131,7 +157,11 @@ def _explore(
     /,
     *,
     out: Path,
-    views: int = 17_000,
+    motion: Literal["brownian", "rotation", "cyclic", "chemotaxis", "track", "replay"] = "brownian",
+    odorant: int | None = None,
+    path: Path | None = None,
+    fit: bool | None = None,
+    views: int | None = None,
     width: int = 360,
     height: int = 60,
     noise: float = 0.1,
@@ -140,7 +170,9 @@ def _explore(
 ) -> None:
     """Walk through a room and record what is seen and smelt; a killed exploration goes on when called again.
 
-    Examples: `cogmap explore furnished --out walk.zarr`; `cogmap explore pillar --views 5000 --out p.zarr`.
+    Examples: `cogmap explore furnished --out walk.zarr`; `cogmap explore pillar --views 5000 --out p.zarr`;
+    `cogmap explore furnished --motion rotation --out spin.zarr`;
+    `cogmap explore open_field --motion replay --path rat.csv --fit --out rat.zarr`.
 
     Parameters
     ----------
@@ -148,16 +180,26 @@ def _explore(
         A room of the gallery or a TOML file.
     out
         Folder of the recording.
+    motion
+        How to move.
+    odorant
+        Which odour `chemotaxis` climbs, from 0.
+    path
+        CSV or NPZ file of the path that `replay` follows: columns t (s), x, y (m) and, optionally, heading
+        (rad) or heading_deg.
+    fit
+        Whether `replay` scales and moves the path to fit the room.
     views
-        How many to take.
+        How many to take; what the motion does by default, such as 17,000 brownian ones, or all of a path.
     width, height
         Of the panoramic views, pixels.
     noise
         Standard deviation of the log of the smelt concentration.
     """
+    told = {"odorant": odorant, "path": path, "fit": fit}
     recording = explore(
         Arena.load(arena),
-        Brownian(),
+        MOTIONS[motion](**{name: value for name, value in told.items() if value is not None}),
         Camera.panoramic(width, height),
         nose=Nose(noise=noise),
         views=views,

@@ -2,22 +2,15 @@
 
 import math
 from collections.abc import Iterator
-from typing import Annotated
+from typing import ClassVar
 
 import numpy as np
-from pydantic import Field
 
 from arena.arena import Arena
 from arena.body import Body, Drive, Pose
 from arena.motions import Walk
+from arena.motions.stepping import STEP, Positive, Share, Spread, Way, look, random_start, turn_by
 from arena.settings import Settings
-
-STEP = 0.05
-"""Length of a physics step, s."""
-
-_Positive = Annotated[float, Field(ge=0.01, le=100)]
-_Spread = Annotated[float, Field(ge=0, le=100)]
-_Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class Brownian(Settings):
@@ -67,21 +60,23 @@ class Brownian(Settings):
     reflections, Arch. Ration. Mech. Anal. 191: the cosine law.
     """
 
-    speed: _Positive = 0.4
-    speed_spread: _Spread = 0.1
-    wander: _Spread = 0.5
-    wander_time: _Positive = 0.6
-    run_length: _Positive = 1.0
-    spin_probability: _Share = 1.0
-    spin: _Spread = 1.0
-    spin_speed: _Positive = 1.75
-    grazing: _Share = 0.7
-    shyness: _Spread = 0.8
-    spacing: _Positive = 0.12
-    angle: _Positive = 0.35
+    default_views: ClassVar[int] = 17_000
+
+    speed: Positive = 0.4
+    speed_spread: Spread = 0.1
+    wander: Spread = 0.5
+    wander_time: Positive = 0.6
+    run_length: Positive = 1.0
+    spin_probability: Share = 1.0
+    spin: Spread = 1.0
+    spin_speed: Positive = 1.75
+    grazing: Share = 0.7
+    shyness: Spread = 0.8
+    spacing: Positive = 0.12
+    angle: Positive = 0.35
     start: Pose | None = None
 
-    def walk(self, arena: Arena, body: Body, views: int, rng: np.random.Generator) -> Walk:
+    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
         """Wander until this many views are taken, the first at the start.
 
         Raises
@@ -89,26 +84,11 @@ class Brownian(Settings):
         ArenaError
             When the body does not fit, or the start is not free.
         """
-        start = self.start
-        if start is None:
-            x, y = arena.sample_free(1, body.radius, rng)[0].tolist()
-            start = x, y, rng.uniform(-np.pi, np.pi)
-        drive = body.place(arena, start)
-        times, poses = np.zeros(views), np.empty((views, 3))
-        poses[0] = drive.pose
-        seen, moved, turned = 1, 0.0, 0.0
-        for now, (way, turn) in enumerate(self._steps(drive, body, rng), start=1):
-            if seen == views:
-                break
-            moved += way
-            turned += abs(turn)
-            if moved >= self.spacing or turned >= self.angle:
-                times[seen], poses[seen] = now * STEP, drive.pose
-                seen, moved, turned = seen + 1, 0.0, 0.0
-        return Walk(times, poses)
+        drive = body.place(arena, self.start or random_start(arena, body, rng))
+        ways = self._steps(drive, body, rng)
+        return look(drive, ways, views or self.default_views, spacing=self.spacing, angle=self.angle)
 
-    def _steps(self, drive: Drive, body: Body, rng: np.random.Generator) -> Iterator[tuple[float, float]]:
-        """Step for ever; yield how far (m, rad) each step went."""
+    def _steps(self, drive: Drive, body: Body, rng: np.random.Generator) -> Iterator[Way]:
         memory = math.exp(-STEP / self.wander_time)
         kick = self.wander * math.sqrt(1 - memory**2)
         rate = self.wander * rng.standard_normal()
@@ -119,8 +99,9 @@ class Brownian(Settings):
             while left > 0 and away is None:
                 rate = memory * rate + kick * rng.standard_normal()
                 drive.step(speed, rate, STEP)
-                yield speed * STEP, rate * STEP
-                left -= speed * STEP
+                way = drive.speed * STEP
+                yield way, abs(rate) * STEP
+                left -= way
                 away = drive.ahead(shy) if drive.contact is None else drive.contact
             if away is not None:
                 goal = away + math.asin(self.grazing * rng.uniform(-1, 1))
@@ -129,9 +110,4 @@ class Brownian(Settings):
                 angle = self.spin * rng.standard_normal()
             else:
                 continue
-            pace = min(self.spin_speed, body.max_turn) * STEP
-            while angle:
-                turn = math.copysign(min(abs(angle), pace), angle)
-                drive.step(0.0, turn / STEP, STEP)
-                yield 0.0, turn
-                angle -= turn
+            yield from turn_by(drive, angle, min(self.spin_speed, body.max_turn))

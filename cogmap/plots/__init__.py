@@ -8,6 +8,7 @@ from cogmap.plots.position import plot_position
 from cogmap.plots.room import plot_room
 from cogmap.plots.sheet import plot_sheet
 from cogmap.plots.views import plot_views
+from cogmap.plots.walk import plot_walk
 
 __all__ = [
     "plot_barcodes",
@@ -18,4 +19,5 @@ __all__ = [
     "plot_sheet",
     "plot_tuning_curves",
     "plot_views",
+    "plot_walk",
 ]

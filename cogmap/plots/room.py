@@ -63,11 +63,7 @@ def plot_room(arena: Arena, poses: Float[np.ndarray, "views 3"] | None = None) -
     axes = figure.add_subplot()
     tidy_room(axes, title=f"{arena.name}: from one odour contour to the next the concentration halves")
     axes.title.set_parse_math(False)
-    _draw_platform(axes, arena)
-    for wall in arena.walls:
-        _draw_wall(axes, wall, arena.walkable)
-    for solid in arena.solids:
-        _draw_solid(axes, solid)
+    draw_surfaces(axes, arena)
     _draw_odours(axes, arena)
     if arena.light is not None:
         _draw_light(axes, arena.light)
@@ -77,6 +73,15 @@ def plot_room(arena: Arena, poses: Float[np.ndarray, "views 3"] | None = None) -
     axes.set(xlim=(x0 - margin, x1 + margin), ylim=(y0 - margin, y1 + margin))
     figure.legend(loc="outside lower center", ncols=5, fontsize=SMALL, labelcolor=INK, frameon=False)
     return figure
+
+
+def draw_surfaces(axes: Axes, arena: Arena) -> None:
+    """Draw the border of the platform, the walls and the solids."""
+    _draw_platform(axes, arena)
+    for wall in arena.walls:
+        _draw_wall(axes, wall, arena.walkable)
+    for solid in arena.solids:
+        _draw_solid(axes, solid)
 
 
 def _colour(material: str) -> tuple[float, float, float]:

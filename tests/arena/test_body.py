@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from arena.arena import Arena
@@ -121,6 +121,42 @@ def test_wedge_holds_the_body() -> None:
     assert drive.pose[0] == pytest.approx(0.1 / np.sin(np.arctan2(0.3, 4)), abs=0.05)
 
 
+@pytest.mark.parametrize("share", [0.95, 0.99, 1.01])
+def test_a_gap_lets_through_what_fits(share: float) -> None:
+    half = 0.18 * share
+    arena = room(
+        square(3),
+        walls=[
+            {"start": (0.0, sign * half), "end": (0.0, sign * 3.0), "material": "brick"} for sign in (-1, 1)
+        ],
+    )
+    rng = np.random.default_rng(0)
+    for top in 10 ** rng.uniform(-0.3, 1.3, 15):
+        drive = Body(max_speed=top).place(arena, (-rng.uniform(0.2, 0.5), 0.0, 0.0))
+        for _ in range(100):
+            drive.step(top * rng.random(), np.clip(-20 * drive.pose[2] - 40 * drive.pose[1], -3, 3), 0.05)
+        assert (drive.pose[0] > 0) == (share > 1)
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 2**32), radius=st.floats(0.05, 0.3), top=st.floats(0.1, 100))
+def test_no_speed_tunnels_through_walls_or_wedges(seed: int, radius: float, top: float) -> None:
+    rng = np.random.default_rng(seed)
+    ends = rng.uniform(-2, 2, (8, 2, 2)).round(3).tolist()
+    walls = [{"start": tuple(a), "end": tuple(b), "material": "brick"} for a, b in ends]
+    arena = room(square(2), walls=walls)
+    assume(arena.free_space(radius).area > 1e-3)
+    region = shapely.get_parts(arena.free_space(0.99 * radius))
+    x, y = arena.sample_free(1, radius, rng)[0].tolist()
+    mine = region[shapely.contains_xy(region, x, y)][0]
+    drive = Body(radius=radius, max_speed=top, max_turn=20.0).place(arena, (x, y, 0.0))
+    places = []
+    for dt in 10 ** rng.uniform(-3, -0.5, 60):
+        drive.step(rng.uniform(-top, top), rng.normal(0, 5), dt)
+        places.append(drive.pose[:2])
+    assert shapely.distance(mine, shapely.points(places)).max() < 1e-4
+
+
 @settings(max_examples=20, deadline=None)
 @given(
     name=st.sampled_from(["pillar", "elbow"]),
@@ -140,6 +176,71 @@ def test_never_leaves_free_space(name: str, seed: int, turning: float, radius: f
         places.append(drive.pose[:2])
     free = arena.free_space(radius)
     assert shapely.distance(free, shapely.points(places)).max() < 1e-3
+
+
+def test_speeds_up_and_brakes_within_its_accelerations() -> None:
+    body = Body(max_acceleration=0.5, max_turn_acceleration=2.0)
+    drive = body.place(room(square(5)), (0.0, 0.0, 0.0))
+    for _ in range(10):
+        drive.step(0.4, 0.0, 0.1)
+    # 0.8 s at 0.5 m/s² take it to 0.4 m/s.
+    assert (drive.speed, drive.pose[0]) == pytest.approx((0.4, 0.4**2 / (2 * 0.5) + 0.2 * 0.4))
+    start = drive.pose[0]
+    for _ in range(40):
+        drive.step(0.0, 0.0, 0.03)
+    assert (drive.speed, drive.pose[0] - start) == pytest.approx((0.0, 0.4**2 / (2 * 0.5)))
+    for _ in range(7):
+        drive.step(0.0, -1.0, 0.1)
+    assert (drive.turn, drive.pose[2]) == pytest.approx((-1.0, -(1.0**2 / (2 * 2.0) + 0.2 * 1.0)))
+    drive.step(0.0, 1.0, 0.25)
+    assert drive.turn == pytest.approx(-0.5)
+
+
+@given(steps=st.lists(st.floats(0.001, 0.2), min_size=1, max_size=40), command=st.floats(-2, 2))
+@settings(max_examples=30, deadline=None)
+def test_how_time_is_divided_does_not_matter(steps: list[float], command: float) -> None:
+    body = Body(max_speed=1.0, max_acceleration=0.7)
+    drives = [body.place(room(square(20)), (0.0, 0.0, 0.0)) for _ in range(2)]
+    for dt in steps:
+        drives[0].step(command, 0.0, dt)
+    drives[1].step(command, 0.0, sum(steps))
+    assert drives[0].pose == pytest.approx(drives[1].pose)
+    assert drives[0].speed == pytest.approx(drives[1].speed)
+
+
+def test_without_limits_it_obeys_at_once() -> None:
+    at_once, soon = (
+        Body(max_acceleration=limit, max_turn_acceleration=limit).place(room(square(5)), (0.0, 0.0, 0.0))
+        for limit in (None, 1e6)
+    )
+    rng = np.random.default_rng(0)
+    for speed, turn in rng.uniform(-1, 1, (50, 2)).tolist():
+        at_once.step(speed, turn, 0.05)
+        soon.step(speed, turn, 0.05)
+        assert (at_once.speed, at_once.turn) == (max(-0.65, min(0.65, speed)), turn)
+    assert soon.pose == pytest.approx(at_once.pose, abs=1e-4)
+
+
+def test_wheels_drive_round_a_circle() -> None:
+    body = Body(wheel_base=0.3)
+    assert body.from_wheels(0.2, 0.2) == (0.2, 0.0)
+    assert body.from_wheels(-0.15, 0.15) == pytest.approx((0.0, 1.0))
+    drive = body.place(room(square(5)), (0.0, 0.0, 0.0))
+    left, right = 0.3, 0.5
+    places = []
+    for _ in range(400):
+        drive.step(*body.from_wheels(left, right), 0.05)
+        places.append(drive.pose[:2])
+    radius = 0.5 * 0.3 * (right + left) / (right - left)
+    np.testing.assert_allclose(np.hypot(*(np.array(places) - [0, radius]).T), radius, rtol=1e-3)
+
+
+def test_wheels_slip_at_a_wall() -> None:
+    drive = Body(max_acceleration=1.0).place(room(square(2)), (1.7, 0.0, 0.0))
+    for _ in range(20):
+        drive.step(0.5, 0.0, 0.05)
+    assert drive.pose[0] == pytest.approx(1.82, abs=1e-5)
+    assert drive.speed == 0.5
 
 
 @pytest.mark.parametrize(
@@ -167,7 +268,9 @@ def test_bad_commands_are_refused(command: tuple[float, float, float]) -> None:
         drive.step(*command)
 
 
-@pytest.mark.parametrize("name", ["radius", "max_speed", "max_turn"])
+@pytest.mark.parametrize(
+    "name", ["radius", "max_speed", "max_turn", "max_acceleration", "max_turn_acceleration", "wheel_base"]
+)
 @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
 def test_bad_parameters_are_refused(name: str, value: float) -> None:
     with pytest.raises(ArenaError, match=name):

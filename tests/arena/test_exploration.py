@@ -14,6 +14,9 @@ from arena.body import Body
 from arena.errors import ArenaError
 from arena.exploration import explore
 from arena.motions.brownian import Brownian
+from arena.motions.chemotaxis import Chemotaxis
+from arena.motions.replay import Replay
+from arena.motions.track import Track
 from arena.nose import Nose
 from arena.recording import Recording
 
@@ -88,6 +91,32 @@ def test_attributes_tell_how_to_do_it_again() -> None:
         seed=told["seed"],
     )
     assert_equal(rec, again)
+
+
+def test_without_a_number_the_motion_says_how_many(tmp_path: Path) -> None:
+    arena = Arena.load("open_field")
+    assert len(explore(arena, Track(), Toy())) == Track.default_views
+    np.savez(tmp_path / "path.npz", t=np.arange(300) / 50, x=np.linspace(-1, 1, 300), y=np.zeros(300))
+    rat = Replay(path=tmp_path / "path.npz")
+    once = explore(arena, rat, Toy(), out=tmp_path / "rec.zarr")
+    assert len(once) == 300
+    camera = Toy()
+    assert_equal(explore(arena, rat, camera, out=tmp_path / "rec.zarr"), once)
+    assert camera.calls == []
+    assert once.attributes["motion"]["path"] == str(tmp_path / "path.npz")
+    assert len(explore(arena, rat, Toy(), views=20)) == 20
+
+
+@pytest.mark.parametrize("where", ["memory", "disk"])
+def test_notes_of_the_walk_are_kept(tmp_path: Path, where: str) -> None:
+    arena, out = Arena.load("open_field"), tmp_path / "rec.zarr" if where == "disk" else None
+    rec = explore(arena, Chemotaxis(), Toy(), views=VIEWS, out=out)
+    walk_rng = np.random.default_rng(np.random.SeedSequence(0).spawn(2)[0])
+    walk = Chemotaxis().walk(arena, Body(), VIEWS, walk_rng)
+    np.testing.assert_array_equal(rec.poses, walk.poses)
+    assert rec.attributes["walk"] == walk.notes
+    assert len(walk.notes["at_maximum"]) > 3
+    assert go().attributes["walk"] == {}
 
 
 def test_seed_varies_walk_and_noise() -> None:

@@ -66,6 +66,41 @@ def test_explore_learn_score(run, folder: Path, tmp_path: Path) -> None:
     assert json.loads(out)["heading_resultant"] > 0.95
 
 
+@pytest.mark.parametrize(
+    ("words", "views"),
+    [
+        (["rotation"], 60),
+        (["cyclic"], 60),
+        (["track"], 60),
+        (["chemotaxis", "--odorant", 2], 60),
+        (["replay", "--path", "rat.csv", "--fit"], None),
+    ],
+)
+def test_every_motion_explores(
+    run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: list[object], views: int | None
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("rat.csv").write_text("t,x,y\n0,0,0\n0.1,10,3\n0.2,20,3\n0.4,,\n", encoding="utf-8")
+    some = ["--views", views] if views else []
+    status, out, err = run(
+        "explore",
+        "furnished",
+        "--motion",
+        *words,
+        *some,
+        "--width",
+        36,
+        "--height",
+        6,
+        "--out",
+        "x.zarr",
+        "--json",
+    )
+    assert status == 0, err
+    assert json.loads(out)["views"] == (views or 3)
+    assert Recording.open("x.zarr").attributes["motion"]["kind"] == str(words[0]).capitalize()
+
+
 def test_arena_shows_a_room(run, tmp_path: Path) -> None:
     status, out, _ = run("arena", "pillar", "--out", tmp_path / "room.png", "--json")
     assert status == 0
@@ -140,6 +175,12 @@ def test_a_room_without_free_space_is_refused(run, tmp_path: Path) -> None:
         (["explore", "furnished", "--width", -1], "width"),
         (["explore", "furnished", "--noise", "nan"], "noise"),
         (["explore", "furnished", "--seed", -1], "seed"),
+        (["explore", "furnished", "--motion", "waltz"], "waltz"),
+        (["explore", "furnished", "--motion", "chemotaxis", "--odorant", 3], "3 odour sources"),
+        (["explore", "furnished", "--motion", "replay"], "path"),
+        (["explore", "furnished", "--motion", "replay", "--path", "nowhere.csv"], "nowhere.csv"),
+        (["explore", "furnished", "--motion", "track", "--path", "rat.csv"], "path"),
+        (["explore", "furnished", "--odorant", 1], "odorant"),
         (["dance"], "dance"),
         (["demo", "--sofa", 3], "sofa"),
     ],

@@ -1,0 +1,154 @@
+"""Back to the source of an odour, again and again."""
+
+import math
+from collections.abc import Generator, Iterator
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from arena.arena import Arena
+from arena.body import Body, Drive, Pose
+from arena.errors import ArenaError
+from arena.motions import Walk
+from arena.motions.stepping import STEP, Positive, Way, look, random_start, turn_by
+from arena.odour import OdourField
+from arena.settings import Settings
+
+ENOUGH = 0.5
+"""Less than this share of the strongest smell met is no maximum."""
+
+
+class Chemotaxis(Settings):
+    """Climbs one odour to its maximum, spins there, is pushed away in a random direction, and climbs again.
+
+    A climb goes by strides along the gradient, quartered whenever one no longer smells stronger, and sliding
+    along walls. Pushed against a wall the body bounces off. Stuck where it smells much less than at the
+    strongest maximum so far it is pushed at once.
+
+    The views at the maximum form a ring. Which they are stands in the notes of the walk: `at_maximum` holds
+    the first view of each stay and the one after its last, without those at a much weaker maximum, found
+    before the stronger one.
+
+    Parameters
+    ----------
+    odorant
+        Which odour.
+    push
+        Mean distance by which the body is pushed away, m; it varies by half to either side.
+    stride
+        First stride of a climb, m.
+    precision
+        A climb ends when the strides are shorter, m.
+    speed
+        m/s.
+    pace
+        Turn rate, rad/s.
+    spacing, angle
+        A view is taken when the body has moved this far (m) or turned this much (rad) since the last.
+    start
+        First pose; drawn from free space when None.
+
+    Raises
+    ------
+    ArenaError
+        For parameters out of range.
+    """
+
+    default_views: ClassVar[int] = 5_000
+
+    odorant: Annotated[int, Field(ge=0)] = 0
+    push: Positive = 1.0
+    stride: Positive = 0.2
+    precision: Annotated[float, Field(ge=1e-4, le=1)] = 0.01
+    speed: Positive = 0.4
+    pace: Positive = 1.75
+    spacing: Positive = 0.12
+    angle: Positive = 0.35
+    start: Pose | None = None
+
+    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+        """Go and come back until this many views are taken, the first at the start.
+
+        Raises
+        ------
+        ArenaError
+            When the body does not fit, the start is not free, or there is no such odour.
+        """
+        if self.odorant >= len(arena.sources):
+            raise ArenaError(
+                f"arena {arena.name!r} has {len(arena.sources)} odour sources, so no odour {self.odorant}; "
+                "count them from 0"
+            )
+        drive = body.place(arena, self.start or random_start(arena, body, rng))
+        stays: list[tuple[float, int, int]] = []
+        ways = _counted(self._legs(drive, body, arena.odours, rng), stays)
+        walk = look(drive, ways, views or self.default_views, spacing=self.spacing, angle=self.angle)
+        strength, first, last = np.reshape(stays, (-1, 3)).T
+        steps = np.rint(walk.times / STEP)
+        spans = np.stack([np.searchsorted(steps, first), np.searchsorted(steps, last, "right")], axis=1)
+        return walk._replace(
+            notes={"at_maximum": spans[strength > ENOUGH * strength.max(initial=0)].tolist()}
+        )
+
+    def _legs(
+        self, drive: Drive, body: Body, odours: OdourField, rng: np.random.Generator
+    ) -> Iterator[tuple[float | None, Iterator[Way]]]:
+        """Give the legs of the way, one by one, and how strong it smells where one is a stay at a maximum."""
+        pace, speed = min(self.pace, body.max_turn), min(self.speed, body.max_speed)
+        strongest = 0.0
+        while True:
+            yield None, self._climb(drive, odours, pace, speed)
+            strength, _ = self._smell(drive, odours)
+            if strength > ENOUGH * strongest:
+                strongest = max(strength, strongest)
+                yield strength, turn_by(drive, rng.choice([-1, 1]) * (2 * math.pi + self.angle), pace)
+            yield None, self._go_away(drive, pace, speed, rng)
+
+    def _climb(self, drive: Drive, odours: OdourField, pace: float, speed: float) -> Iterator[Way]:
+        stride = self.stride
+        strength, gradient = self._smell(drive, odours)
+        while stride > self.precision:
+            x, y, heading = drive.pose
+            yield from turn_by(drive, math.remainder(gradient - heading, 2 * math.pi), pace)
+            yield from _run(drive, stride, speed, slide=True)
+            before, (strength, gradient) = strength, self._smell(drive, odours)
+            if strength <= before or math.dist((x, y), drive.pose[:2]) < 0.02 * stride:
+                stride *= 0.25
+
+    def _go_away(self, drive: Drive, pace: float, speed: float, rng: np.random.Generator) -> Iterator[Way]:
+        left, angle = self.push * rng.uniform(0.5, 1.5), rng.uniform(-math.pi, math.pi)
+        while left > 1e-9:
+            yield from turn_by(drive, angle, pace)
+            left = yield from _run(drive, left, speed, slide=False)
+            away = drive.pose[2] if drive.contact is None else drive.contact
+            angle = math.remainder(away + rng.uniform(-0.5, 0.5) * math.pi - drive.pose[2], 2 * math.pi)
+
+    def _smell(self, drive: Drive, odours: OdourField) -> tuple[float, float]:
+        """Give the concentration at the nose, and the direction (rad) in which it rises."""
+        xy = np.array([drive.pose[:2]])
+        rise, climb = odours.gradient(xy)[0, self.odorant].tolist()
+        return odours.concentration(xy)[0, self.odorant].item(), math.atan2(climb, rise)
+
+
+def _run(drive: Drive, length: float, speed: float, *, slide: bool) -> Generator[Way, None, float]:
+    """Go straight ahead for a length (m), sliding along walls or stopping there; give what is left of it."""
+    while length > 1e-9 and (slide or drive.contact is None):
+        drive.step(min(speed, length / STEP), 0.0, STEP)
+        yield drive.speed * STEP, abs(drive.turn) * STEP
+        length -= drive.speed * STEP
+    return length
+
+
+def _counted(
+    legs: Iterator[tuple[float | None, Iterator[Way]]], stays: list[tuple[float, int, int]]
+) -> Iterator[Way]:
+    """Join legs; note of every stay how strong it smells and the steps between which it lasts."""
+    step = 0
+    for strength, leg in legs:
+        first = step
+        for way in leg:
+            step += 1
+            yield way
+        if strength is not None:
+            stays.append((strength, first, step))

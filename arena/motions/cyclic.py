@@ -1,0 +1,91 @@
+"""A run along one axis with spins all the way: all headings, everywhere on a line."""
+
+import math
+from collections.abc import Iterator
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from arena.arena import Arena
+from arena.body import Body, Drive
+from arena.motions import Walk
+from arena.motions.corridor import corridor
+from arena.motions.stepping import Place, Positive, Spread, Way, bearing, go_to, look, turn_by
+from arena.settings import Settings
+
+FACING = 0.6
+"""How much more than a full spin it takes to face the next corner, on average, rad."""
+
+
+class Cyclic(Settings):
+    """Zigzags along a straight way with a full spin at every corner, to the end and back.
+
+    The corners are spread so that `passes` of the way take about all views. Each is at random in its own
+    part of the way, and across it within ± `width` / 2. As `width` is small beside the length of the way, the
+    views lie on a cylinder, R×S¹.
+
+    Parameters
+    ----------
+    ends
+        Of the way, m; those of the longest straight way in the room when None.
+    width
+        Range across the way, m; less where the room is narrower.
+    passes
+        How often to go along the way.
+    speed
+        m/s.
+    pace
+        Turn rate, rad/s.
+    spacing, angle
+        A view is taken when the body has moved this far (m) or turned this much (rad) since the last.
+
+    Raises
+    ------
+    ArenaError
+        For parameters out of range.
+    """
+
+    default_views: ClassVar[int] = 4_000
+
+    ends: tuple[Place, Place] | None = None
+    width: Spread = 0.1
+    passes: Annotated[int, Field(ge=1, le=1000)] = 3
+    speed: Positive = 0.4
+    pace: Positive = 1.75
+    spacing: Positive = 0.12
+    angle: Positive = 0.175
+
+    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+        """Go to and fro until this many views are taken, the first at the first end.
+
+        Raises
+        ------
+        ArenaError
+            When the body does not fit, or something is in the way.
+        """
+        views = views or self.default_views
+        start, end, room = corridor(arena, body, self.width / 2, self.ends)
+        drive = body.place(arena, (*start, rng.uniform(-np.pi, np.pi)))
+        spins = max(1, round(views * self.angle / (2 * np.pi + FACING) / self.passes))
+        ways = self._zigzag(drive, body, self._corners(start, end, room, spins, rng))
+        return look(drive, ways, views, spacing=self.spacing, angle=self.angle)
+
+    def _corners(
+        self, start: Place, end: Place, room: float, spins: int, rng: np.random.Generator
+    ) -> Iterator[Place]:
+        along = np.subtract(end, start)
+        across = np.array([-along[1], along[0]]) / np.hypot(*along)
+        while True:
+            for order in (range(spins), range(spins)[::-1]):
+                for part in order:
+                    share, side = (part + rng.random()) / spins, room * rng.uniform(-1, 1)
+                    x, y = start + share * along + side * across
+                    yield float(x), float(y)
+
+    def _zigzag(self, drive: Drive, body: Body, corners: Iterator[Place]) -> Iterator[Way]:
+        pace, speed = min(self.pace, body.max_turn), min(self.speed, body.max_speed)
+        for corner in corners:
+            face = bearing(drive.pose, corner)
+            yield from turn_by(drive, face + math.copysign(2 * math.pi, face), pace)
+            yield from go_to(drive, corner, speed)

@@ -1,0 +1,204 @@
+"""The path of an animal, as recorded."""
+
+from pathlib import Path
+from typing import Annotated, ClassVar
+
+import numpy as np
+import shapely
+from jaxtyping import Float, Int
+from pydantic import Field, PlainSerializer, model_validator
+from shapely.geometry.base import BaseGeometry
+
+from arena.arena import Arena
+from arena.body import TOLERANCE, Body
+from arena.errors import ArenaError
+from arena.motions import Walk
+from arena.motions.paths import RecordedPath, read_path
+from arena.motions.stepping import Place, free_space
+from arena.settings import Settings
+
+LATE = 1.5
+"""Samples further apart than this many median intervals leave a gap."""
+MOST = 10_000_000
+"""Samples that may be interpolated."""
+
+_Above = Annotated[float, Field(ge=1e-6, le=1e6)]
+
+
+class Replay(Settings):
+    """Goes where an animal went: see `arena.motions.paths.read_path` for the files.
+
+    Where samples are missing, or are not numbers, the way between their neighbours is straight and even. A
+    path without headings looks where it goes, and turns evenly between two moves while it is still.
+
+    All views are samples of the path, interpolated ones among them. The notes of the walk tell how many
+    `samples` the file has, how many lost ones were `trimmed` from its ends, how many `gaps` there are, the
+    `longest_gap_s`, how many samples were `interpolated` for them, and how many positions were `clipped`.
+
+    Parameters
+    ----------
+    path
+        CSV or NPZ file.
+    scale, offset
+        A position p of the file is `scale` * p + `offset` in the arena, m.
+    fit
+        Scale and move the path so that it just fits the box around the body's free space.
+    clip
+        Move positions that are not free to the nearest that is; else they are an error.
+    interval, spacing
+        A view is taken at the first sample in every `interval` s, or after every `spacing` m of the path; at
+        every sample when both are None.
+    smoothing
+        Time over which the direction of motion is taken, s.
+    still
+        Speed below which there is none, m/s.
+
+    Raises
+    ------
+    ArenaError
+        For parameters out of range or at odds with each other.
+    """
+
+    default_views: ClassVar[None] = None
+
+    path: Annotated[Path, PlainSerializer(str)]
+    scale: _Above = 1.0
+    offset: Place = (0.0, 0.0)
+    fit: bool = False
+    clip: bool = False
+    interval: _Above | None = None
+    spacing: _Above | None = None
+    smoothing: _Above = 0.25
+    still: Annotated[float, Field(ge=0, le=100)] = 0.02
+
+    @model_validator(mode="after")
+    def _agree(self) -> "Replay":
+        if self.interval is not None and self.spacing is not None:
+            raise ValueError("both interval and spacing are given; choose one")
+        if self.fit and (self.scale, self.offset) != (1.0, (0.0, 0.0)):
+            raise ValueError("fit finds scale and offset itself; leave them out")
+        return self
+
+    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:  # noqa: ARG002
+        """Follow the path, for this many views if told; nothing is random.
+
+        Raises
+        ------
+        ArenaError
+            When the file is no path, the path leaves the body's free space or has fewer views.
+        """
+        recorded = read_path(self.path)
+        times, positions, notes = _bridged(recorded)
+        positions = self._placed(positions, free_space(arena, body))
+        if recorded.headings is None:
+            headings = self._ahead(times, positions)
+        else:
+            known = np.isfinite(recorded.headings)
+            headings = np.interp(times, recorded.times[known], np.unwrap(recorded.headings[known]))
+        taken = self._taken(times, positions)[:views]
+        if views is not None and len(taken) < views:
+            raise ArenaError(f"{self.path} gives {len(taken)} views, not {views}; ask for no more")
+        positions, clipped = self._kept(arena, body, times, positions)
+        poses = np.column_stack([positions, np.pi - (np.pi - headings) % (2 * np.pi)])[taken]
+        return Walk(times[taken] - times[0], poses, {**notes, "clipped": clipped})
+
+    def _placed(
+        self, positions: Float[np.ndarray, "samples 2"], free: BaseGeometry
+    ) -> Float[np.ndarray, "samples 2"]:
+        """Bring the path into the room."""
+        if not self.fit:
+            return self.scale * positions + self.offset
+        low, high = positions.min(axis=0), positions.max(axis=0)
+        room = np.reshape(free.bounds, (2, 2))
+        sides = zip(room[1] - room[0], high - low, strict=True)
+        scale = min((side / length for side, length in sides if length > 0), default=1.0)
+        placed: np.ndarray = (positions - (low + high) / 2) * scale + room.mean(axis=0)
+        return placed
+
+    def _ahead(
+        self, times: Float[np.ndarray, " samples"], positions: Float[np.ndarray, "samples 2"]
+    ) -> Float[np.ndarray, " samples"]:
+        """Give the direction of motion, rad, unwrapped."""
+        ends = [np.clip(times + sign * self.smoothing / 2, times[0], times[-1]) for sign in (-1, 1)]
+        before, after = (_at(end, times, positions) for end in ends)
+        x, y = (after - before).T
+        moving = np.hypot(x, y) > self.still * (ends[1] - ends[0])
+        if not moving.any():
+            raise ArenaError(
+                f"{self.path} never moves faster than {self.still:g} m/s, so that it has no direction; "
+                "give it a heading column or lower `still`"
+            )
+        ahead: np.ndarray = np.interp(times, times[moving], np.unwrap(np.arctan2(y, x)[moving]))
+        return ahead
+
+    def _taken(
+        self, times: Float[np.ndarray, " samples"], positions: Float[np.ndarray, "samples 2"]
+    ) -> Int[np.ndarray, " views"]:
+        """Say at which samples views are taken."""
+        if self.interval is not None:
+            gone, every = times - times[0], self.interval
+        elif self.spacing is not None:
+            gone = np.insert(np.cumsum(np.hypot(*np.diff(positions, axis=0).T)), 0, 0.0)
+            every = self.spacing
+        else:
+            return np.arange(len(times))
+        # Rounding must not put a sample that is due into the interval before.
+        return np.unique(np.floor(gone / every + 1e-9), return_index=True)[1]
+
+    def _kept(
+        self,
+        arena: Arena,
+        body: Body,
+        times: Float[np.ndarray, " samples"],
+        positions: Float[np.ndarray, "samples 2"],
+    ) -> tuple[Float[np.ndarray, "samples 2"], int]:
+        """Keep the path in free space, and count the positions that had to be moved."""
+        outside = np.flatnonzero(~arena.is_free(positions, max(0.0, body.radius - TOLERANCE)))
+        if len(outside) and not self.clip:
+            x, y = positions[outside[0]]
+            raise ArenaError(
+                f"{self.path} leaves the free space of a body of radius {body.radius:g} m, "
+                f"first at ({x:.3f}, {y:.3f}) m and {times[outside[0]]:.3f} s, "
+                f"in {len(outside)} of {len(times)} samples; "
+                "fit or clip it, or take a wider arena or a smaller body"
+            )
+        kept = positions.copy()
+        ways = shapely.shortest_line(shapely.points(positions[outside]), free_space(arena, body))
+        kept[outside] = shapely.get_coordinates(ways)[1::2]
+        return kept, len(outside)
+
+
+def _bridged(
+    path: RecordedPath,
+) -> tuple[Float[np.ndarray, " samples"], Float[np.ndarray, "samples 2"], dict[str, object]]:
+    """Fill gaps; give times, positions, and what there is to tell."""
+    known = np.flatnonzero(np.isfinite(path.positions).all(axis=1))
+    times, positions = path.times[known], path.positions[known]
+    lapse = np.diff(times)
+    usual = np.median(lapse)
+    gaps = np.flatnonzero(lapse > LATE * usual)
+    lost = np.rint(lapse[gaps] / usual) - 1
+    if lost.sum() > MOST:
+        worst = gaps[np.argmax(lost)]
+        raise ArenaError(
+            f"a gap of {lapse[worst]:g} s after {times[worst]:g} s is too long to interpolate "
+            f"every {usual:g} s; cut the path there"
+        )
+    fill = [np.linspace(times[g], times[g + 1], int(n) + 2)[1:-1] for g, n in zip(gaps, lost, strict=True)]
+    dense = np.sort(np.concatenate([times, *fill]))
+    notes: dict[str, object] = {
+        "samples": len(path.times),
+        "trimmed": len(path.times) - int(known[-1] - known[0]) - 1,
+        "gaps": len(gaps),
+        "longest_gap_s": float(lapse[gaps].max(initial=0.0)),
+        "interpolated": int(lost.sum()),
+    }
+    return dense, _at(dense, times, positions), notes
+
+
+def _at(
+    when: Float[np.ndarray, " moments"],
+    times: Float[np.ndarray, " samples"],
+    positions: Float[np.ndarray, "samples 2"],
+) -> Float[np.ndarray, "moments 2"]:
+    return np.stack([np.interp(when, times, along) for along in positions.T], axis=1)

@@ -1,0 +1,75 @@
+"""To and fro along a corridor."""
+
+import math
+from collections.abc import Iterator
+from typing import ClassVar
+
+import numpy as np
+
+from arena.arena import Arena
+from arena.body import Body, Drive
+from arena.motions import Walk
+from arena.motions.corridor import corridor
+from arena.motions.stepping import Place, Positive, Spread, Way, bearing, go_to, look, turn_by
+from arena.settings import Settings
+
+ROOM = 0.02
+"""Kept from walls along the way, where there is as much, m."""
+
+
+class Track(Settings):
+    """Runs straight from one end to the other and back, with a turn to either side at random at each end.
+
+    The speed varies from run to run, and where it ends by `spacing`, so that no two runs see the same.
+
+    Parameters
+    ----------
+    ends
+        Two points, m; those of the longest straight way in the room when None.
+    speed, speed_spread
+        Mean and standard deviation over runs, m/s.
+    pace
+        Turn rate at the ends, rad/s.
+    spacing, angle
+        A view is taken when the body has moved this far (m) or turned this much (rad) since the last.
+
+    Raises
+    ------
+    ArenaError
+        For parameters out of range.
+    """
+
+    default_views: ClassVar[int] = 2_000
+
+    ends: tuple[Place, Place] | None = None
+    speed: Positive = 0.4
+    speed_spread: Spread = 0.1
+    pace: Positive = 1.75
+    spacing: Positive = 0.12
+    angle: Positive = 0.35
+
+    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+        """Go to and fro until this many views are taken, the first at the first end.
+
+        Raises
+        ------
+        ArenaError
+            When the body does not fit, or something is in the way.
+        """
+        here, there, _ = corridor(arena, body, ROOM, self.ends)
+        drive = body.place(arena, (*here, math.atan2(there[1] - here[1], there[0] - here[0])))
+        ways = self._runs(drive, body, (here, there), rng)
+        return look(drive, ways, views or self.default_views, spacing=self.spacing, angle=self.angle)
+
+    def _runs(
+        self, drive: Drive, body: Body, ends: tuple[Place, Place], rng: np.random.Generator
+    ) -> Iterator[Way]:
+        here, there = ends
+        while True:
+            speed = min(body.max_speed, max(0.2 * self.speed, rng.normal(self.speed, self.speed_spread)))
+            short = rng.random() * min(0.5, self.spacing / math.dist(here, there))
+            x, y = (b + short * (a - b) for a, b in zip(here, there, strict=True))
+            yield from go_to(drive, (x, y), speed)
+            here, there = there, here
+            back, side = bearing(drive.pose, there), rng.choice([-1, 1])
+            yield from turn_by(drive, side * (side * back % (2 * math.pi)), min(self.pace, body.max_turn))

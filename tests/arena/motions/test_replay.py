@@ -1,0 +1,196 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from arena.arena import Arena
+from arena.body import Body
+from arena.errors import ArenaError
+from arena.motions import Walk
+from arena.motions.replay import Replay
+
+SMALL = Body(radius=0.01)
+
+
+def replay(motion: Replay, views: int | None = None, arena: str = "open_field", body: Body = SMALL) -> Walk:
+    return motion.walk(Arena.load(arena), body, views, np.random.default_rng(0))
+
+
+def circle(count: int = 500, radius: float = 1.0, rate: float = 50.0) -> dict[str, np.ndarray]:
+    """Once round, counter-clockwise, at a steady speed."""
+    angle = np.linspace(0, 2 * np.pi, count)
+    return {
+        "t": 7 + np.arange(count) / rate,
+        "pos": radius * np.stack([np.cos(angle), np.sin(angle)], axis=1),
+    }
+
+
+def zigzag(count: int = 401) -> dict[str, np.ndarray]:
+    """Straight pieces of 40 samples each."""
+    t = 0.1 * np.arange(count)
+    pos = np.stack([np.linspace(-1.5, 1.5, count), 0.3 * np.abs((t / 4 + 1) % 2 - 1)], axis=1)
+    return {"t": t, "pos": pos}
+
+
+@pytest.fixture
+def save(tmp_path: Path):
+    def to_file(**arrays: np.ndarray) -> Path:
+        np.savez(tmp_path / "path.npz", **arrays)
+        return tmp_path / "path.npz"
+
+    return to_file
+
+
+def test_every_sample_is_a_view(save) -> None:
+    path, heading = circle(), np.linspace(-3, 9, 500)
+    times, poses, notes = replay(Replay(path=save(**path, heading=heading)))
+    np.testing.assert_allclose(times, path["t"] - 7)
+    np.testing.assert_array_equal(poses[:, :2], path["pos"])
+    np.testing.assert_allclose(np.exp(1j * poses[:, 2]), np.exp(1j * heading))
+    assert (np.abs(poses[:, 2]) <= np.pi).all()
+    told = {"samples": 500, "trimmed": 0, "gaps": 0, "longest_gap_s": 0.0, "interpolated": 0, "clipped": 0}
+    assert notes == told
+
+
+@pytest.mark.parametrize("how", ["nan", "missing"])
+def test_gaps_are_interpolated_exactly_and_told(save, how: str) -> None:
+    path = zigzag()
+    full = replay(Replay(path=save(**path, heading=path["t"])))
+    lost = np.zeros(401, dtype=bool)
+    lost[[5, 100, 101, 102, *range(201, 231), 0, 399, 400]] = True
+    heading = np.where(lost, np.nan, path["t"])
+    if how == "nan":
+        pos = path["pos"].copy()
+        pos[lost, np.arange(lost.sum()) % 2] = np.nan
+        walk = replay(Replay(path=save(t=path["t"], pos=pos, heading=heading)))
+    else:
+        kept = {name: values[~lost] for name, values in path.items()}
+        walk = replay(Replay(path=save(**kept, heading=heading[~lost])))
+    np.testing.assert_allclose(walk.times, full.times[1:399] - 0.1, atol=1e-9)
+    np.testing.assert_allclose(walk.poses, full.poses[1:399], atol=1e-9)
+    assert walk.notes["gaps"] == 3
+    assert walk.notes["longest_gap_s"] == pytest.approx(3.1)
+    assert walk.notes["interpolated"] == 34
+    assert walk.notes["trimmed"] == (3 if how == "nan" else 0)
+    assert walk.notes["samples"] == (401 if how == "nan" else 364)
+
+
+def test_without_headings_it_looks_where_it_goes(save) -> None:
+    path = circle(2000)
+    poses = replay(Replay(path=save(**path))).poses
+    tangent = 1j * (path["pos"] @ [1, 1j])
+    off = np.angle(np.exp(1j * poses[:, 2]) / tangent)
+    np.testing.assert_allclose(off[10:-10], 0, atol=1e-6)
+    assert np.abs(off).max() < 0.05
+
+
+def test_standing_still_it_turns_from_one_move_to_the_next(save) -> None:
+    t = np.arange(0, 12, 0.02)
+    x, y = np.clip(t, 0, 4) / 4, np.clip(t - 8, 0, 4) / 4
+    heading = replay(Replay(path=save(t=t, x=x, y=y))).poses[:, 2]
+    np.testing.assert_allclose(heading[t < 3.8], 0, atol=1e-9)
+    np.testing.assert_allclose(heading[t > 8.2], np.pi / 2, atol=1e-9)
+    still = heading[(t > 4.2) & (t < 7.8)]
+    np.testing.assert_allclose(np.diff(still), np.diff(still).mean(), atol=1e-9)
+    assert (np.diff(still) > 0).all()
+
+
+def test_headings_turn_the_short_way_over_a_gap(save) -> None:
+    heading = np.array([3.0, np.nan, np.nan, -3.0, -2.9])
+    poses = replay(Replay(path=save(t=np.arange(5), x=np.zeros(5), y=np.zeros(5), heading=heading))).poses
+    step = (2 * np.pi - 6) / 3
+    np.testing.assert_allclose(poses[:, 2], [3.0, 3.0 + step, -3.0 - step, -3.0, -2.9])
+
+
+def test_views_by_time(save) -> None:
+    path = circle(500)
+    times, poses, _ = replay(Replay(path=save(**path), interval=0.1))
+    np.testing.assert_allclose(times, 0.1 * np.arange(100), atol=1e-9)
+    np.testing.assert_array_equal(poses[:, :2], path["pos"][::5])
+
+
+def test_views_by_distance(save) -> None:
+    # It stops for five seconds halfway.
+    x = np.concatenate([np.linspace(-1, 0, 201), np.zeros(250), np.linspace(0, 1, 101)])
+    path = {"t": 0.02 * np.arange(len(x)), "x": x, "y": 0.1 * np.ones(len(x))}
+    poses = replay(Replay(path=save(**path), spacing=0.05)).poses
+    np.testing.assert_allclose(poses[:, 0], np.linspace(-1, 1, 41), atol=1e-9)
+
+
+def test_fewer_views_are_the_first(save) -> None:
+    motion = Replay(path=save(**circle()))
+    np.testing.assert_array_equal(replay(motion, 30).poses, replay(motion).poses[:30])
+    with pytest.raises(ArenaError, match="gives 500 views, not 501"):
+        replay(motion, 501)
+
+
+def test_scaled_and_moved(save) -> None:
+    path = circle()
+    centimetres = save(t=path["t"], pos=100 * path["pos"])
+    poses = replay(Replay(path=centimetres, scale=0.01, offset=(0.5, -0.25))).poses
+    np.testing.assert_allclose(poses[:, :2], path["pos"] + [0.5, -0.25])
+
+
+@pytest.mark.parametrize("stretch", [(3.0, 1.0), (0.1, 7.0), (2.0, 0.0), (0.0, 0.0)])
+def test_fitted_into_the_room(save, stretch: tuple[float, float]) -> None:
+    path = circle(2000)
+    pos = path["pos"] * stretch + [40.0, -9.0]
+    poses = replay(Replay(path=save(t=path["t"], pos=pos, heading=path["t"]), fit=True), body=Body()).poses
+    # The body's centre has 3.64 by 2.64 m.
+    scale = min((side / (2 * s) for side, s in zip((3.64, 2.64), stretch, strict=True) if s), default=1)
+    np.testing.assert_allclose(poses[:, :2], scale * (path["pos"] * stretch), atol=1e-4)
+
+
+def test_leaving_the_room_is_told_where(save) -> None:
+    path = save(**circle(radius=1.6))
+    with pytest.raises(ArenaError, match=r"first at \(0\.\d+, 1\.49\d\) m and 8\.\d+ s, in \d+ of 500"):
+        replay(Replay(path=path))
+    assert replay(Replay(path=path, offset=(-0.3, 0.0), scale=0.5)).notes["clipped"] == 0
+
+
+def test_clipped_to_the_nearest_free_place(save) -> None:
+    path = circle(radius=1.6)
+    _, poses, notes = replay(Replay(path=save(**path), clip=True))
+    np.testing.assert_allclose(poses[:, :2], np.clip(path["pos"], [-1.99, -1.49], [1.99, 1.49]), atol=2e-3)
+    assert notes["clipped"] == (np.abs(path["pos"][:, 1]) > 1.491).sum()
+    assert Arena.load("open_field").is_free(poses[:, :2], 0.009).all()
+    around = replay(Replay(path=save(**circle(radius=0.3)), clip=True), arena="pillar").poses
+    np.testing.assert_allclose(np.hypot(*around[:, :2].T), 0.51, atol=0.003)
+
+
+def test_the_random_numbers_do_not_matter(save) -> None:
+    motion, arena = Replay(path=save(**circle())), Arena.load("open_field")
+    first, other = (motion.walk(arena, SMALL, None, np.random.default_rng(seed)) for seed in (0, 1))
+    np.testing.assert_array_equal(first.poses, other.poses)
+
+
+def test_a_path_without_direction_is_refused(save) -> None:
+    with pytest.raises(ArenaError, match="no direction"):
+        replay(Replay(path=save(t=np.arange(9), x=np.zeros(9), y=np.ones(9))))
+
+
+def test_an_endless_gap_is_refused(save) -> None:
+    with pytest.raises(ArenaError, match=r"a gap of 1e\+09 s after 1 s"):
+        replay(Replay(path=save(t=[0, 0.1, 0.2, 1, 1e9], x=np.zeros(5), y=np.arange(5))))
+
+
+def test_body_that_fits_nowhere_is_refused(save) -> None:
+    with pytest.raises(ArenaError, match="no free space"):
+        replay(Replay(path=save(**circle())), body=Body(radius=1.6))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"interval": 0.1, "spacing": 0.1}, "choose one"),
+        ({"fit": True, "scale": 2.0}, "leave them out"),
+        ({"fit": True, "offset": (1.0, 0.0)}, "leave them out"),
+        ({"scale": 0.0}, "scale"),
+        ({"interval": np.nan}, "interval"),
+        ({"offset": (np.inf, 0.0)}, "offset"),
+        ({"path": None}, "path"),
+    ],
+)
+def test_bad_parameters_are_refused(wrong: dict[str, object], said: str) -> None:
+    with pytest.raises(ArenaError, match=said):
+        Replay(**{"path": "path.csv", **wrong})
