@@ -1,15 +1,19 @@
 """The sense of smell: what a noisy, slowly fluctuating nose makes of a concentration."""
 
+import math
+import typing
 from typing import Annotated
 
 import numpy as np
 from jaxtyping import Float, Float32
+from numba import njit
 from pydantic import Field
 
 from arena.errors import ArenaError
 from arena.settings import Settings
 
-_FLOAT32 = np.finfo(np.float32)
+_FAINTEST, _STRONGEST = float(np.finfo(np.float32).tiny), float(np.finfo(np.float32).max)
+_SOUND, _BAD_CONCENTRATION, _BAD_TIME = range(3)
 
 
 class Nose(Settings):
@@ -52,24 +56,86 @@ class Nose(Settings):
         ArenaError
             For concentrations that are not positive and finite, or times that run backwards.
         """
-        if not (np.isfinite(concentrations) & (concentrations > 0)).all():
-            raise ArenaError("a concentration is zero, negative, infinite or NaN; give positive numbers")
-        lapse = np.diff(times)
-        if not (lapse >= 0).all():
-            raise ArenaError("the times of the views run backwards or are NaN; give them in order, in s")
-        log_gain = self.noise * rng.standard_normal(concentrations.shape)
-        if self.fluctuation:
-            log_gain += self._drift(lapse, rng.standard_normal(concentrations.shape))
-        smelt: np.ndarray = np.clip(concentrations * np.exp(log_gain), _FLOAT32.tiny, _FLOAT32.max)
-        return smelt.astype(np.float32)
+        return self.sniffer(concentrations.shape[1], rng).smell(concentrations, times)
 
-    def _drift(
-        self, lapse: Float[np.ndarray, " lapses"], shock: Float[np.ndarray, "views odorants"]
-    ) -> Float[np.ndarray, "views odorants"]:
-        """Ornstein-Uhlenbeck paths from stationary starts, exact at any spacing of times."""
-        memory = np.exp(-lapse / self.correlation_time)
-        innovation = np.sqrt(-np.expm1(-2 * lapse / self.correlation_time))
-        gain = self.fluctuation * shock
-        for view in range(1, len(gain)):
-            gain[view] = memory[view - 1] * gain[view - 1] + innovation[view - 1] * gain[view]
-        return gain
+    def sniffer(self, odorants: int, rng: np.random.Generator) -> "Sniffer":
+        """Begin to smell this many odorants, a few views at a time."""
+        return Sniffer(self, odorants, rng)
+
+
+class Sniffer:
+    """A nose at work; `Nose.sniffer` makes one. It remembers how its gain has drifted and since when."""
+
+    def __init__(self, nose: Nose, odorants: int, rng: np.random.Generator) -> None:
+        self._nose = nose
+        self._rng = rng
+        self._gain = np.zeros(odorants)
+        # Everything is forgotten since then: the first gain is drawn from the stationary distribution.
+        self._time = -np.inf
+
+    def smell(
+        self,
+        concentrations: Float[np.ndarray, "views odorants"],
+        times: Float[np.ndarray, " views"],
+    ) -> Float32[np.ndarray, "views odorants"]:
+        """Go on smelling; views smelt in several calls are the same, bit by bit, as in one.
+
+        Raises
+        ------
+        ArenaError
+            For concentrations that are not positive and finite, or times that run backwards.
+        """
+        nose, views = self._nose, len(times)
+        normals = self._rng.standard_normal((views, 2 if nose.fluctuation else 1, len(self._gain)))
+        smelt = np.empty(concentrations.shape, np.float32)
+        fault = _smell(
+            concentrations,
+            times,
+            self._time,
+            normals,
+            nose.noise,
+            nose.fluctuation,
+            nose.correlation_time,
+            self._gain,
+            smelt,
+        )
+        if fault == _BAD_CONCENTRATION:
+            raise ArenaError("a concentration is zero, negative, infinite or NaN; give positive numbers")
+        if fault == _BAD_TIME:
+            raise ArenaError("the times of the views run backwards or are NaN; give them in order, in s")
+        if views:
+            self._time = times[-1]
+        return smelt
+
+
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def _smell(
+    concentrations: np.ndarray,
+    times: np.ndarray,
+    last: float,
+    normals: np.ndarray,
+    noise: float,
+    fluctuation: float,
+    correlation_time: float,
+    gain: np.ndarray,
+    smelt: np.ndarray,
+) -> int:
+    for view in range(len(times)):
+        for odorant in range(len(gain)):
+            if not 0 < concentrations[view, odorant] < np.inf:
+                return _BAD_CONCENTRATION
+        if not times[view] >= (times[view - 1] if view else last):
+            return _BAD_TIME
+    for view in range(len(times)):
+        if normals.shape[1] == 2:
+            lapse = (times[view] - last) / correlation_time
+            last = times[view]
+            memory, innovation = math.exp(-lapse), math.sqrt(-math.expm1(-2 * lapse))
+        for odorant in range(len(gain)):
+            if normals.shape[1] == 2:
+                gain[odorant] = memory * gain[odorant] + fluctuation * innovation * normals[view, 1, odorant]
+            log_gain = noise * normals[view, 0, odorant] + gain[odorant]
+            scent = concentrations[view, odorant] * math.exp(log_gain)
+            smelt[view, odorant] = min(max(scent, _FAINTEST), _STRONGEST)
+    return _SOUND
