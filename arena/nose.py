@@ -13,7 +13,6 @@ from arena.errors import ArenaError
 from arena.settings import Settings
 
 _FAINTEST, _STRONGEST = float(np.finfo(np.float32).tiny), float(np.finfo(np.float32).max)
-_SOUND, _BAD_CONCENTRATION, _BAD_TIME = range(3)
 
 
 class Nose(Settings):
@@ -67,11 +66,12 @@ class Sniffer:
     """A nose at work; `Nose.sniffer` makes one. It remembers how its gain has drifted and since when."""
 
     def __init__(self, nose: Nose, odorants: int, rng: np.random.Generator) -> None:
-        self._nose = nose
+        self._constants = nose.noise, nose.fluctuation, nose.correlation_time
         self._rng = rng
+        self._draws = 2 if nose.fluctuation else 1
         self._gain = np.zeros(odorants)
-        # Everything is forgotten since then: the first gain is drawn from the stationary distribution.
-        self._time = -np.inf
+        # All is forgotten since then, so that the first gain comes from the stationary distribution.
+        self._time = np.array([-np.inf])
 
     def smell(
         self,
@@ -85,26 +85,9 @@ class Sniffer:
         ArenaError
             For concentrations that are not positive and finite, or times that run backwards.
         """
-        nose, views = self._nose, len(times)
-        normals = self._rng.standard_normal((views, 2 if nose.fluctuation else 1, len(self._gain)))
-        smelt = np.empty(concentrations.shape, np.float32)
-        fault = _smell(
-            concentrations,
-            times,
-            self._time,
-            normals,
-            nose.noise,
-            nose.fluctuation,
-            nose.correlation_time,
-            self._gain,
-            smelt,
-        )
-        if fault == _BAD_CONCENTRATION:
-            raise ArenaError("a concentration is zero, negative, infinite or NaN; give positive numbers")
-        if fault == _BAD_TIME:
-            raise ArenaError("the times of the views run backwards or are NaN; give them in order, in s")
-        if views:
-            self._time = times[-1]
+        normals = self._rng.standard_normal((len(times), self._draws, len(self._gain)))
+        state = self._time, self._gain
+        smelt: np.ndarray = _smell(concentrations, times, normals, self._constants, state)
         return smelt
 
 
@@ -113,29 +96,30 @@ class Sniffer:
 def _smell(
     concentrations: np.ndarray,
     times: np.ndarray,
-    last: float,
     normals: np.ndarray,
-    noise: float,
-    fluctuation: float,
-    correlation_time: float,
-    gain: np.ndarray,
-    smelt: np.ndarray,
-) -> int:
+    constants: tuple[float, float, float],
+    state: tuple[np.ndarray, np.ndarray],
+) -> np.ndarray:
+    noise, fluctuation, correlation_time = constants
+    time, gain = state
+    last = time[0]
     for view in range(len(times)):
         for odorant in range(len(gain)):
             if not 0 < concentrations[view, odorant] < np.inf:
-                return _BAD_CONCENTRATION
-        if not times[view] >= (times[view - 1] if view else last):
-            return _BAD_TIME
+                raise ArenaError("a concentration is zero, negative, infinite or NaN; give positive numbers")
+        if not times[view] >= last:
+            raise ArenaError("the times of the views run backwards or are NaN; give them in order, in s")
+        last = times[view]
+    smelt = np.empty(concentrations.shape, np.float32)
     for view in range(len(times)):
         if normals.shape[1] == 2:
-            lapse = (times[view] - last) / correlation_time
-            last = times[view]
+            lapse = (times[view] - time[0]) / correlation_time
             memory, innovation = math.exp(-lapse), math.sqrt(-math.expm1(-2 * lapse))
-        for odorant in range(len(gain)):
-            if normals.shape[1] == 2:
+            for odorant in range(len(gain)):
                 gain[odorant] = memory * gain[odorant] + fluctuation * innovation * normals[view, 1, odorant]
+        time[0] = times[view]
+        for odorant in range(len(gain)):
             log_gain = noise * normals[view, 0, odorant] + gain[odorant]
             scent = concentrations[view, odorant] * math.exp(log_gain)
             smelt[view, odorant] = min(max(scent, _FAINTEST), _STRONGEST)
-    return _SOUND
+    return smelt

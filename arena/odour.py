@@ -16,8 +16,8 @@ from arena.errors import ArenaError
 
 FAINTEST = 1e-30
 """Concentration where no odour arrives: positive, so that its logarithm and its float32 exist."""
-MOST_CELLS = 1_000_000
-"""Above this the factorisation takes minutes and gigabytes."""
+MOST_CELLS = 400_000
+"""Above this the factorisation takes more than a few seconds and a gigabyte."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -30,7 +30,8 @@ class OdourField:
     between the cell centres it parts, cells inside solids are left out, nothing leaves through `bounds`. A
     source is shared out bilinearly among the cells around it that it sees, which makes c finite within a cell
     of it. Between cell centres log c is interpolated by cubic convolution, which has continuous derivatives
-    and reaches two cells far; nearer than that to a wall inside `bounds` it blends both of the wall's sides.
+    and reaches two cells far; nearer than that to a wall inside `bounds` it blends both of the wall's sides,
+    unless no odour arrives at one of them: within half a cell of such a wall it drops to `FAINTEST`.
 
     Parameters
     ----------
@@ -99,9 +100,9 @@ class OdourField:
         self, xy: Float[np.ndarray, "points 2"], terms: int
     ) -> Float[np.ndarray, "points odorants terms"]:
         xy = np.ascontiguousarray(xy, dtype=np.float64)
-        log, box = self._table
+        log, reached, box = self._table
         out = np.empty((len(xy), log.shape[2], terms))
-        outside = _convolve(xy, log, box, out)
+        outside = _convolve(xy, log, reached, box, out)
         if outside >= 0:
             raise ArenaError(
                 f"no odour at {xy[outside].tolist()}: it is outside the room, whose x min, y min, x max, "
@@ -204,21 +205,35 @@ class OdourField:
         return sparse.coo_array((np.concatenate(entries), where), shape=2 * (free.size,)).tocsc()
 
     @cached_property
-    def _table(self) -> tuple[Float[np.ndarray, "nx_and_4 ny_and_4 odorants"], Float[np.ndarray, "4"]]:
-        return self._solve(), np.array(self.bounds)
+    def _table(self) -> tuple[np.ndarray, np.ndarray, Float[np.ndarray, "4"]]:
+        return *self._solve(), np.array(self.bounds)
 
     @lru_cache(maxsize=8)  # noqa: B019  equal fields share one solution, as when many environments load a room
-    def _solve(self) -> Float[np.ndarray, "nx_and_4 ny_and_4 odorants"]:
-        """Log concentration at the cell centres, with two mirrored cells beyond each side."""
+    def _solve(
+        self,
+    ) -> tuple[Float[np.ndarray, "nx_and_4 ny_and_4 odorants"], Bool[np.ndarray, "nx ny odorants"]]:
+        """Log concentration at the cell centres, with two mirrored cells beyond each side; where any arrives.
+
+        A cell in a solid, and for the taps of its neighbours a cell that no odour arrives at, is like the
+        nearest that has an odour.
+        """
         # One factorisation serves every odorant.
         concentration = splu(self._matrix()).solve(self._spread()).reshape(*self._shape, len(self.sources))
-        log = np.log(np.maximum(concentration, FAINTEST))
         if not self._free.any():
             raise ArenaError("the odour has no free cell to be in; make room between the solids")
-        nearest = ndimage.distance_transform_edt(
-            ~self._free, sampling=self._step, return_distances=False, return_indices=True
+        concentration = concentration[self._nearest(self._free)]
+        reached = concentration > FAINTEST
+        for odorant in np.flatnonzero(~reached.all(axis=(0, 1))):
+            concentration[..., odorant] = concentration[..., odorant][self._nearest(reached[..., odorant])]
+        return np.pad(np.log(concentration), ((2, 2), (2, 2), (0, 0)), mode="symmetric"), reached
+
+    def _nearest(self, cells: Bool[np.ndarray, "nx ny"]) -> tuple[Int[np.ndarray, "nx ny"], ...]:
+        """For every cell the indices of the nearest of these."""
+        return tuple(
+            ndimage.distance_transform_edt(
+                ~cells, sampling=self._step, return_distances=False, return_indices=True
+            )
         )
-        return np.pad(log[tuple(nearest)], ((2, 2), (2, 2), (0, 0)), mode="symmetric")
 
 
 @njit(cache=True, error_model="numpy")
@@ -247,31 +262,35 @@ def _slopes(f: float) -> tuple[float, float, float, float]:
 
 @njit(cache=True, error_model="numpy")
 @typing.no_type_check
-def _convolve(xy: np.ndarray, log: np.ndarray, box: np.ndarray, out: np.ndarray) -> int:
-    """Put the concentration and, if out has room, its slopes by x and y into out; say which point is outside."""
-    step_x, step_y = (box[2] - box[0]) / (log.shape[0] - 4), (box[3] - box[1]) / (log.shape[1] - 4)
+def _convolve(xy: np.ndarray, log: np.ndarray, reached: np.ndarray, box: np.ndarray, out: np.ndarray) -> int:
+    """Fill out with concentrations and, if it has room, slopes; return a point out of bounds or −1."""
+    nx, ny, odorants = reached.shape
+    step_x, step_y = (box[2] - box[0]) / nx, (box[3] - box[1]) / ny
     for p in range(len(xy)):
         x, y = xy[p, 0], xy[p, 1]
         if not (box[0] <= x <= box[2] and box[1] <= y <= box[3]):
             return p
-        x, y = (x - box[0]) / step_x + 0.5, (y - box[1]) / step_y + 0.5
-        i, j = math.floor(x), math.floor(y)
-        across, up = _weights(x - i), _weights(y - j)
-        for odorant in range(log.shape[2]):
-            value = 0.0
+        x, y = (x - box[0]) / step_x, (y - box[1]) / step_y
+        cell_x, cell_y = min(int(x), nx - 1), min(int(y), ny - 1)
+        i, j = int(x + 0.5), int(y + 0.5)
+        f, g = x + 0.5 - i, y + 0.5 - j
+        across, up = _weights(f), _weights(g)
+        slope_across, slope_up = _slopes(f), _slopes(g)
+        for odorant in range(odorants):
+            if not reached[cell_x, cell_y, odorant]:
+                out[p, odorant] = 0.0
+                out[p, odorant, 0] = FAINTEST
+                continue
+            value, by_x, by_y = 0.0, 0.0, 0.0
             for a in range(4):
                 for b in range(4):
-                    value += across[a] * up[b] * log[i + a, j + b, odorant]
-            out[p, odorant, 0] = math.exp(value)
-        if out.shape[2] == 1:
-            continue
-        slope_across, slope_up = _slopes(x - i), _slopes(y - j)
-        for odorant in range(log.shape[2]):
-            by_x, by_y = 0.0, 0.0
-            for a in range(4):
-                for b in range(4):
-                    by_x += slope_across[a] * up[b] * log[i + a, j + b, odorant]
-                    by_y += across[a] * slope_up[b] * log[i + a, j + b, odorant]
-            out[p, odorant, 1] = out[p, odorant, 0] * by_x / step_x
-            out[p, odorant, 2] = out[p, odorant, 0] * by_y / step_y
+                    tap = log[i + a, j + b, odorant]
+                    value += across[a] * up[b] * tap
+                    by_x += slope_across[a] * up[b] * tap
+                    by_y += across[a] * slope_up[b] * tap
+            concentration = math.exp(value)
+            out[p, odorant, 0] = concentration
+            if out.shape[2] == 3:
+                out[p, odorant, 1] = concentration * by_x / step_x
+                out[p, odorant, 2] = concentration * by_y / step_y
     return -1
