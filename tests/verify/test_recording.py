@@ -43,23 +43,27 @@ def complete(path: Path) -> dict[str, tuple[int, int]]:
     return {str(one): (one.stat().st_ino, one.stat().st_mtime_ns) for one in found}
 
 
+def when_begun(path: Path) -> float:
+    while not path.exists():
+        time.sleep(0.01)
+    return time.perf_counter()
+
+
 def test_killed_twenty_times(tmp_path: Path) -> None:
     whole = tmp_path / "whole.zarr"
-    started = time.perf_counter()
     with subprocess.Popen(command(whole, VIEWS), cwd=ROOT, stdout=subprocess.DEVNULL) as undisturbed:
-        while not whole.exists():
-            time.sleep(0.01)
-        begun = time.perf_counter() - started
+        begun = when_begun(whole)
     assert undisturbed.returncode == 0
-    total = time.perf_counter() - started
+    writing = time.perf_counter() - begun
     wanted = content(whole)
     assert len([name for name in wanted if name.startswith("views/c/")]) == len(shards(VIEWS))
     rng = np.random.default_rng()
     kept = []
     for kill in range(KILLS):
         path = tmp_path / f"{kill}.zarr"
-        moment = rng.uniform(begun, total)
+        moment = rng.uniform(0, writing)
         with subprocess.Popen(command(path, VIEWS), cwd=ROOT, stdout=subprocess.DEVNULL) as victim:
+            when_begun(path)
             time.sleep(moment)
             victim.send_signal(signal.SIGKILL)
         before = complete(path)
@@ -69,7 +73,7 @@ def test_killed_twenty_times(tmp_path: Path) -> None:
         same = {name: after[name] for name in before} == before
         kept.append(len(before))
         sys.stdout.write(
-            f"kill {kill + 1} after {moment:.2f} of {total:.2f} s: {len(before)} of {len(after)} shards were "
+            f"kill {kill + 1} after {moment:.2f} of {writing:.2f} s: {len(before)} of {len(after)} shards were "
             f"whole, untouched {same}, bit-identical {content(path) == wanted}\n"
         )
         assert same
