@@ -73,8 +73,8 @@ def test_killed_twenty_times(tmp_path: Path) -> None:
         same = {name: after[name] for name in before} == before
         kept.append(len(before))
         sys.stdout.write(
-            f"kill {kill + 1} after {moment:.2f} of {writing:.2f} s: {len(before)} of {len(after)} shards were "
-            f"whole, untouched {same}, bit-identical {content(path) == wanted}\n"
+            f"kill {kill + 1} after {moment:.2f} of {writing:.2f} s, {len(before)} of {len(after)} shards "
+            f"whole: untouched {same}, bit-identical {content(path) == wanted}\n"
         )
         assert same
         assert content(path) == wanted
