@@ -1,6 +1,7 @@
 """Frames per second of the eye, against ViZDoom, a memory copy and pymunk's segment queries."""
 
 import importlib.util
+import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -75,9 +76,8 @@ def crowded() -> Arena:
         {"center": center, "radius": 0.15, "height": 0.6 + 0.05 * index, "material": "granite"}
         for index, center in enumerate(zip(x.ravel().tolist(), y.ravel().tolist(), strict=True))
     ]
-    return Arena.create(
-        **{**dict(ROOM), "name": "crowded", "boxes": ROOM.boxes[:3], "pillars": pillars, "sources": ()}
-    )
+    room = ROOM.model_dump(exclude_defaults=True)
+    return Arena.create(**{**room, "boxes": ROOM.boxes[:3], "pillars": pillars, "sources": ()})
 
 
 def two_threads() -> Figures:
@@ -95,11 +95,13 @@ def two_threads() -> Figures:
 
 
 @contextmanager
-def doom() -> Iterator[Callable[[], int]]:
+def doom(folder: Path) -> Iterator[Callable[[], int]]:
     """Give work that turns a player on the spot and looks at each frame."""
     import vizdoom  # noqa: PLC0415  a peer that may be missing
 
     game = vizdoom.DoomGame()
+    # Else it leaves its settings in the current folder.
+    game.set_doom_config_path(str(folder / "settings.ini"))
     game.load_config(str(Path(vizdoom.scenarios_path) / "basic.cfg"))
     game.set_mode(vizdoom.Mode.PLAYER)
     game.set_screen_resolution(vizdoom.ScreenResolution.RES_320X240)
@@ -132,7 +134,7 @@ def over_vizdoom() -> Figures:
     """Frames per second in turn with ViZDoom's, both on the same core."""
     if importlib.util.find_spec("vizdoom") is None:
         return missing("vizdoom")
-    with doom() as play:
+    with tempfile.TemporaryDirectory() as folder, doom(Path(folder)) as play:
         return versus(painting(CAMERAS["perspective_320x240"]), play)
 
 

@@ -59,7 +59,7 @@ def test_gymnasium_has_nothing_to_complain_about(control: str, camera: Camera) -
 
 
 def test_gymnasium_has_nothing_to_complain_about_where_nothing_smells() -> None:
-    room = Arena.load("open_field").model_copy(update={"sources": ()})
+    room = Arena.create(**{**Arena.load("open_field").model_dump(exclude_defaults=True), "sources": ()})
     check_env(make(room, reward=lambda _, after: float(after["view"].mean())), skip_render_check=True)
 
 
