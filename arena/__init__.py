@@ -1,5 +1,7 @@
 """The world and the body in it: what an animal can see, smell and bump into."""
 
+import gymnasium
+
 from arena.arena import Arena, gallery
 from arena.body import Body
 from arena.camera import Camera
@@ -43,3 +45,5 @@ __all__ = [
     "explore",
     "gallery",
 ]
+
+gymnasium.register(id="arena/Explorer-v0", entry_point="arena.environment:Explorer", max_episode_steps=2000)

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-import zarr
 from jaxtyping import Float, UInt8
 from tqdm import tqdm
 
@@ -16,6 +15,7 @@ from arena.errors import ArenaError
 from arena.motions import Motion
 from arena.nose import Nose
 from arena.recording import Recording
+from arena.sharding import Writer, shards
 
 _BODY, _NOSE = Body(), Nose()
 
@@ -108,26 +108,34 @@ def explore(
     attributes["walk"] = dict(walk.notes)
     views = len(walk.times)
     shape = (views, camera.height, camera.width, 3)
-    missing = storage.shards(views) if begun is None else begun.missing
-    images: np.ndarray | zarr.Array[Any]
+
+    def look(images: np.ndarray | Writer, missing: list[slice]) -> None:
+        with tqdm(total=views, unit="view", disable=not progress) as bar:
+            bar.update(views - sum(rows.stop - rows.start for rows in missing))
+            for rows in missing:
+                images[rows] = camera.render(arena, walk.poses[rows])
+                bar.update(rows.stop - rows.start)
+
     if path is None:
         images = np.empty(shape, np.uint8)
-    else:
-        if begun is None:
-            with storage.new_folder(path) as folder:
-                storage.lay_out(folder, shape, columns, attributes)
-        elif not _equal(begun.columns, columns):
-            raise ArenaError(
-                f"{path} was begun by a program that walks or smells otherwise; remove it and start again"
-            )
-        images = storage.writable_views(path, missing)
-    with tqdm(total=views, unit="view", disable=not progress) as bar:
-        bar.update(views - sum(rows.stop - rows.start for rows in missing))
-        for rows in missing:
-            images[rows] = camera.render(arena, walk.poses[rows])
-            bar.update(rows.stop - rows.start)
-    if path is None:
+        look(images, shards(views))
         return Recording(views=images, **columns, attributes=attributes)
+    if begun is None:
+        with storage.new_folder(path) as folder:
+            storage.lay_out(folder, shape, columns, attributes)
+    elif not _equal(begun.columns, columns):
+        raise ArenaError(
+            f"{path} was begun by a program that walks or smells otherwise; remove it and start again"
+        )
+    missing = shards(views) if begun is None else begun.missing
+    try:
+        with storage.writable_views(path, missing) as writer:
+            look(writer, missing)
+    except OSError as error:
+        raise ArenaError(
+            f"cannot write {path}: {error.strerror or error}; what is written is kept, and the same command "
+            "goes on from there"
+        ) from None
     return Recording.open(path)
 
 

@@ -1,15 +1,18 @@
 """The sense of smell: what a noisy, slowly fluctuating nose makes of a concentration."""
 
+import math
+import typing
 from typing import Annotated
 
 import numpy as np
 from jaxtyping import Float, Float32
+from numba import njit
 from pydantic import Field
 
 from arena.errors import ArenaError
 from arena.settings import Settings
 
-_FLOAT32 = np.finfo(np.float32)
+_FAINTEST, _STRONGEST = float(np.finfo(np.float32).tiny), float(np.finfo(np.float32).max)
 
 
 class Nose(Settings):
@@ -52,24 +55,71 @@ class Nose(Settings):
         ArenaError
             For concentrations that are not positive and finite, or times that run backwards.
         """
-        if not (np.isfinite(concentrations) & (concentrations > 0)).all():
-            raise ArenaError("a concentration is zero, negative, infinite or NaN; give positive numbers")
-        lapse = np.diff(times)
-        if not (lapse >= 0).all():
-            raise ArenaError("the times of the views run backwards or are NaN; give them in order, in s")
-        log_gain = self.noise * rng.standard_normal(concentrations.shape)
-        if self.fluctuation:
-            log_gain += self._drift(lapse, rng.standard_normal(concentrations.shape))
-        smelt: np.ndarray = np.clip(concentrations * np.exp(log_gain), _FLOAT32.tiny, _FLOAT32.max)
-        return smelt.astype(np.float32)
+        return self.sniffer(concentrations.shape[1], rng).smell(concentrations, times)
 
-    def _drift(
-        self, lapse: Float[np.ndarray, " lapses"], shock: Float[np.ndarray, "views odorants"]
-    ) -> Float[np.ndarray, "views odorants"]:
-        """Ornstein-Uhlenbeck paths from stationary starts, exact at any spacing of times."""
-        memory = np.exp(-lapse / self.correlation_time)
-        innovation = np.sqrt(-np.expm1(-2 * lapse / self.correlation_time))
-        gain = self.fluctuation * shock
-        for view in range(1, len(gain)):
-            gain[view] = memory[view - 1] * gain[view - 1] + innovation[view - 1] * gain[view]
-        return gain
+    def sniffer(self, odorants: int, rng: np.random.Generator) -> "Sniffer":
+        """Begin to smell this many odorants, a few views at a time."""
+        return Sniffer(self, odorants, rng)
+
+
+class Sniffer:
+    """A nose at work; `Nose.sniffer` makes one. It remembers how its gain has drifted and since when."""
+
+    def __init__(self, nose: Nose, odorants: int, rng: np.random.Generator) -> None:
+        self._constants = nose.noise, nose.fluctuation, nose.correlation_time
+        self._rng = rng
+        self._draws = 2 if nose.fluctuation else 1
+        self._gain = np.zeros(odorants)
+        # All is forgotten since then, so that the first gain comes from the stationary distribution.
+        self._time = np.array([-np.inf])
+
+    def smell(
+        self,
+        concentrations: Float[np.ndarray, "views odorants"],
+        times: Float[np.ndarray, " views"],
+    ) -> Float32[np.ndarray, "views odorants"]:
+        """Go on smelling; views smelt in several calls are the same, bit by bit, as in one.
+
+        Raises
+        ------
+        ArenaError
+            For concentrations that are not positive and finite, or times that run backwards.
+        """
+        normals = self._rng.standard_normal((len(times), self._draws, len(self._gain)))
+        state = self._time, self._gain
+        smelt: np.ndarray = _smell(concentrations, times, normals, self._constants, state)
+        return smelt
+
+
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def _smell(
+    concentrations: np.ndarray,
+    times: np.ndarray,
+    normals: np.ndarray,
+    constants: tuple[float, float, float],
+    state: tuple[np.ndarray, np.ndarray],
+) -> np.ndarray:
+    noise, fluctuation, correlation_time = constants
+    time, gain = state
+    last = time[0]
+    for view in range(len(times)):
+        for odorant in range(len(gain)):
+            if not 0 < concentrations[view, odorant] < np.inf:
+                raise ArenaError("a concentration is zero, negative, infinite or NaN; give positive numbers")
+        if not times[view] >= last:
+            raise ArenaError("the times of the views run backwards or are NaN; give them in order, in s")
+        last = times[view]
+    smelt = np.empty(concentrations.shape, np.float32)
+    for view in range(len(times)):
+        if normals.shape[1] == 2:
+            lapse = (times[view] - time[0]) / correlation_time
+            memory, innovation = math.exp(-lapse), math.sqrt(-math.expm1(-2 * lapse))
+            for odorant in range(len(gain)):
+                gain[odorant] = memory * gain[odorant] + fluctuation * innovation * normals[view, 1, odorant]
+        time[0] = times[view]
+        for odorant in range(len(gain)):
+            log_gain = noise * normals[view, 0, odorant] + gain[odorant]
+            scent = concentrations[view, odorant] * math.exp(log_gain)
+            smelt[view, odorant] = min(max(scent, _FAINTEST), _STRONGEST)
+    return smelt

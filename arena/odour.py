@@ -1,11 +1,14 @@
 """Smell: the steady concentration of odorants that diffuse around the walls and decay."""
 
+import math
+import typing
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 import shapely
 from jaxtyping import Bool, Float, Int
+from numba import njit
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
@@ -15,10 +18,6 @@ FAINTEST = 1e-30
 """Concentration where no odour arrives: positive, so that its logarithm and its float32 exist."""
 MOST_CELLS = 250_000
 """Above this the factorisation takes more than a few seconds and a gigabyte."""
-
-_TAPS = np.arange(-1, 3)
-# Cubic convolution: the weight of each tap is a polynomial in the fraction, lowest power first (Keys 1981).
-_KEYS = 0.5 * np.array([[0, -1, 2, -1], [2, 0, -5, 3], [0, 1, 4, -3], [0, 0, -1, 1]])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -79,34 +78,37 @@ class OdourField:
         ArenaError
             For points out of bounds, and for a room or source that the grid cannot resolve.
         """
-        out: np.ndarray = np.exp(self._interpolate(xy, (0, 0)))
-        return out
+        return self._interpolate(xy, 1)[..., 0]
 
     def gradient(self, xy: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, "points odorants 2"]:
         """Differentiate `concentration` by x and y, per m; raises like it."""
-        slopes = np.stack([self._interpolate(xy, (1, 0)), self._interpolate(xy, (0, 1))], axis=-1)
-        out: np.ndarray = self.concentration(xy)[..., None] * slopes
-        return out
+        return self._interpolate(xy, 3)[..., 1:]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, OdourField) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    @cached_property
+    def _key(self) -> tuple[object, ...]:
+        arrays = (self.walls, self.sources, *self.solids)
+        lengths = (*self.bounds, self.decay_length, self.cell)
+        return (*(np.asarray(array, float).tobytes() for array in arrays), lengths)
 
     def _interpolate(
-        self, xy: Float[np.ndarray, "points 2"], order: tuple[int, int]
-    ) -> Float[np.ndarray, "points odorants"]:
-        within = self._within(xy)
-        if not within.all():
+        self, xy: Float[np.ndarray, "points 2"], terms: int
+    ) -> Float[np.ndarray, "points odorants terms"]:
+        xy = np.ascontiguousarray(xy, dtype=np.float64)
+        log, reached, box = self._table
+        out = np.empty((len(xy), log.shape[2], terms))
+        outside = _convolve(xy, log, reached, box, out)
+        if outside >= 0:
             raise ArenaError(
-                f"no odour at {xy[~within][0].tolist()}: it is outside the room, whose x min, y min, x max, "
+                f"no odour at {xy[outside].tolist()}: it is outside the room, whose x min, y min, x max, "
                 f"y max are {self.bounds}; ask for points inside"
             )
-        base, fraction = np.divmod((xy - self.bounds[:2]) / self._step - 0.5, 1)
-        index = base.astype(int)[:, :, None] + _TAPS + len(_TAPS) // 2
-        wx, wy = (
-            _weights(fraction[:, axis], order[axis]) / self._step[axis] ** order[axis] for axis in (0, 1)
-        )
-        log, reached = self._log
-        samples = log[index[:, 0, :, None], index[:, 1, None, :]]
-        out: np.ndarray = np.einsum("pi,pj,pijk->pk", wx, wy, samples)
-        i, j = np.minimum((xy - self.bounds[:2]) // self._step, np.subtract(self._shape, 1)).astype(int).T
-        return np.where(reached[i, j], out, 0.0 if any(order) else np.log(FAINTEST))
+        return out
 
     def _within(self, xy: Float[np.ndarray, "points 2"]) -> Bool[np.ndarray, " points"]:
         low, high = np.reshape(self.bounds, (2, 2))
@@ -203,7 +205,11 @@ class OdourField:
         return sparse.coo_array((np.concatenate(entries), where), shape=2 * (free.size,)).tocsc()
 
     @cached_property
-    def _log(
+    def _table(self) -> tuple[np.ndarray, np.ndarray, Float[np.ndarray, "4"]]:
+        return *self._solve(), np.array(self.bounds)
+
+    @lru_cache(maxsize=8)  # noqa: B019  equal fields share one solution, as when many environments load a room
+    def _solve(
         self,
     ) -> tuple[Float[np.ndarray, "nx_and_4 ny_and_4 odorants"], Bool[np.ndarray, "nx ny odorants"]]:
         """Log concentration at the cell centres, with two mirrored cells beyond each side; where any arrives.
@@ -211,6 +217,7 @@ class OdourField:
         A cell in a solid, and for the taps of its neighbours a cell that no odour arrives at, is like the
         nearest that has an odour.
         """
+        # One factorisation serves every odorant.
         concentration = splu(self._matrix()).solve(self._spread()).reshape(*self._shape, len(self.sources))
         if not self._free.any():
             raise ArenaError("the odour has no free cell to be in; make room between the solids")
@@ -229,9 +236,61 @@ class OdourField:
         )
 
 
-def _weights(fraction: Float[np.ndarray, "points"], order: int) -> Float[np.ndarray, "points 4"]:
-    """Weights of the taps at −1, 0, 1, 2, or their derivatives by the fraction."""
-    power = np.arange(4)
-    lowered = power * fraction[:, None] ** np.maximum(power - 1, 0) if order else fraction[:, None] ** power
-    out: np.ndarray = lowered @ _KEYS.T
-    return out
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def _weights(f: float) -> tuple[float, float, float, float]:
+    """Give the weights of the taps at −1, 0, 1, 2 for a fraction f of the way from 0 to 1 (Keys 1981)."""
+    return (
+        0.5 * f * (f * (2 - f) - 1),
+        0.5 * (f * f * (3 * f - 5) + 2),
+        0.5 * f * (f * (4 - 3 * f) + 1),
+        0.5 * f * f * (f - 1),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def _slopes(f: float) -> tuple[float, float, float, float]:
+    """Differentiate `_weights` by the fraction."""
+    return (
+        0.5 * (f * (4 - 3 * f) - 1),
+        0.5 * f * (9 * f - 10),
+        0.5 * (f * (8 - 9 * f) + 1),
+        0.5 * f * (3 * f - 2),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def _convolve(xy: np.ndarray, log: np.ndarray, reached: np.ndarray, box: np.ndarray, out: np.ndarray) -> int:
+    """Fill out with concentrations and, if it has room, slopes; return a point out of bounds or −1."""
+    nx, ny, odorants = reached.shape
+    step_x, step_y = (box[2] - box[0]) / nx, (box[3] - box[1]) / ny
+    for p in range(len(xy)):
+        x, y = xy[p, 0], xy[p, 1]
+        if not (box[0] <= x <= box[2] and box[1] <= y <= box[3]):
+            return p
+        x, y = (x - box[0]) / step_x, (y - box[1]) / step_y
+        cell_x, cell_y = min(int(x), nx - 1), min(int(y), ny - 1)
+        i, j = int(x + 0.5), int(y + 0.5)
+        f, g = x + 0.5 - i, y + 0.5 - j
+        across, up = _weights(f), _weights(g)
+        slope_across, slope_up = _slopes(f), _slopes(g)
+        for odorant in range(odorants):
+            if not reached[cell_x, cell_y, odorant]:
+                out[p, odorant] = 0.0
+                out[p, odorant, 0] = FAINTEST
+                continue
+            value, by_x, by_y = 0.0, 0.0, 0.0
+            for a in range(4):
+                for b in range(4):
+                    tap = log[i + a, j + b, odorant]
+                    value += across[a] * up[b] * tap
+                    by_x += slope_across[a] * up[b] * tap
+                    by_y += across[a] * slope_up[b] * tap
+            concentration = math.exp(value)
+            out[p, odorant, 0] = concentration
+            if out.shape[2] == 3:
+                out[p, odorant, 1] = concentration * by_x / step_x
+                out[p, odorant, 2] = concentration * by_y / step_y
+    return -1

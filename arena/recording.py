@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float32, Float64, Int, UInt8
 
 from arena import storage
 from arena.errors import ArenaError
+from arena.sharding import shards
 
 Images = UInt8[np.ndarray, "views height width 3"]
 
@@ -79,10 +80,9 @@ class Recording:
         """
         with storage.new_folder(Path(path)) as folder:
             storage.lay_out(folder, self.views.shape, self._columns, self.attributes)
-            shards = storage.shards(len(self))
-            views = storage.writable_views(folder, shards)
-            for rows in shards:
-                views[rows] = self.views[rows]
+            with storage.writable_views(folder, []) as views:
+                for rows in shards(len(self)):
+                    views[rows] = np.asarray(self.views[rows])
 
     @classmethod
     def open(cls, path: str | Path) -> "Recording":

@@ -1,4 +1,4 @@
-"""How a recording lies on disk: a zarr 3 group with the views in shards that are written whole."""
+"""How a recording lies on disk: a zarr 3 group, the views in shards."""
 
 import os
 import shutil
@@ -10,14 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import zarr
 from jaxtyping import Int, UInt8
-from zarr.codecs import BloscCodec
 
 from arena.errors import ArenaError
+from arena.sharding import SHARD, Writer, codec, file, is_whole, shards, writing
 
-VERSION = 1
+VERSION = 2
 """Of the layout."""
-SHARD = 256
-"""Views in a file."""
 
 _COLUMNS = ("odours", "times", "poses")
 # What zarr has been seen to raise on damaged metadata and chunks.
@@ -64,27 +62,23 @@ def lay_out(
 ) -> None:
     """Write everything but the views."""
     group = zarr.create_group(folder, zarr_format=3, attributes={**attributes, "version": VERSION})
-    for name, values in columns.items():
-        group.create_array(name, data=values)
-    group.create_array(
-        "views",
-        shape=shape,
-        dtype="uint8",
-        chunks=(1, *shape[1:]),
-        shards=(SHARD, *shape[1:]),
-        compressors=BloscCodec(cname="zstd", clevel=3, shuffle="noshuffle"),
-    )
-
-
-def writable_views(folder: Path, missing: list[slice]) -> zarr.Array[Any]:
-    """Open the views for writing the missing shards, after clearing away what a kill has left of them."""
-    for rows in missing:
-        _file(folder, rows).unlink(missing_ok=True)
-    for stray in (folder / "views").rglob("*.partial"):
-        stray.unlink()
-    # By default a shard of black images would not be written at all, and count as missing.
+    # By default zeros would not be written at all, and could not be told from a file that was lost.
     with zarr.config.set({"array.write_empty_chunks": True}):
-        return zarr.open_array(folder / "views", mode="r+")
+        for name, values in columns.items():
+            group.create_array(name, data=values)
+    group.create_array("views", **_views(shape))
+
+
+@contextmanager
+def writable_views(path: Path, missing: list[slice]) -> Iterator[Writer]:
+    """Write the missing shards, after clearing away what a kill has left of them; see `sharding.writing`."""
+    folder = path / "views"
+    for rows in missing:
+        file(folder, rows).unlink(missing_ok=True)
+    for stray in folder.rglob("*.partial"):
+        stray.unlink()
+    with writing(folder) as writer:
+        yield writer
 
 
 def load(path: Path) -> Stored:
@@ -98,8 +92,7 @@ def load(path: Path) -> Stored:
     if not path.exists():
         raise ArenaError(f"there is no recording at {path}; check the path or make one with `explore`")
     try:
-        group = zarr.open_group(path, mode="r", zarr_format=3)
-        attributes = group.attrs.asdict()
+        attributes = zarr.open_group(path, mode="r", zarr_format=3).attrs.asdict()
         version = attributes["version"]
     except _DAMAGE:
         raise ArenaError(
@@ -110,20 +103,21 @@ def load(path: Path) -> Stored:
             f"{path} has the layout of version {version!r}, not {VERSION}; record it again with this program"
         )
     try:
-        arrays = dict(group.arrays())
-        columns = {name: np.asarray(arrays[name][:]) for name in _COLUMNS if name in arrays}
-        views = arrays["views"]
-        if views.shards is None or views.shards[0] != SHARD or not {"odours", "times"} <= columns.keys():
-            raise ValueError("an array is missing or cut up otherwise")
-        missing = [rows for rows in shards(views.shape[0]) if not _readable(path, views, rows)]
+        # One by one: of what a group says of its arrays, zarr prints what it cannot read.
+        columns = {
+            name: _whole(path / name) for name in _COLUMNS if name != "poses" or (path / name).exists()
+        }
+        views = zarr.open_array(path / "views", mode="r", zarr_format=3)
+        if views.metadata != zarr.create_array({}, **_views(views.shape)).metadata:
+            raise ValueError("the views are laid out otherwise")
+        missing = [
+            rows
+            for rows in shards(views.shape[0])
+            if not is_whole(file(path / "views", rows), rows.stop - rows.start)
+        ]
     except _DAMAGE as error:
         raise ArenaError(f"{path} is damaged ({_first_line(error)}); record it again") from None
     return Stored(views, columns, attributes, missing)
-
-
-def shards(count: int) -> list[slice]:
-    """Cut this many views into shards."""
-    return [slice(first, min(first + SHARD, count)) for first in range(0, count, SHARD)]
 
 
 def read(
@@ -139,19 +133,22 @@ def read(
     return out
 
 
-def _file(folder: Path, rows: slice) -> Path:
-    return folder / "views" / "c" / str(rows.start // SHARD) / "0" / "0" / "0"
+def _views(shape: tuple[int, ...]) -> dict[str, Any]:
+    """Describe the array of views to zarr."""
+    return {
+        "shape": shape,
+        "dtype": "uint8",
+        "chunks": (1, *shape[1:]),
+        "shards": (SHARD, *shape[1:]),
+        "compressors": codec(),
+    }
 
 
-def _readable(folder: Path, views: zarr.Array[Any], rows: slice) -> bool:
-    if not _file(folder, rows).is_file():
-        return False
-    try:
-        # The index with its checksum is the end of the file: what is cut short fails here.
-        views[rows.start]
-    except _DAMAGE:
-        return False
-    return True
+def _whole(path: Path) -> np.ndarray:
+    column = zarr.open_array(path, mode="r", zarr_format=3)
+    if column.nchunks_initialized < column.nchunks:
+        raise ValueError(f"a part of {path.name} is missing")
+    return np.asarray(column[:])
 
 
 def _first_line(error: Exception) -> str:

@@ -1,14 +1,18 @@
+import errno
 import os
 import signal
 import subprocess
 import sys
 import textwrap
+import time
 import tracemalloc
 from pathlib import Path
 
 import numpy as np
 import pytest
+import zarr
 
+from arena import sharding
 from arena.arena import Arena
 from arena.body import Body
 from arena.errors import ArenaError
@@ -19,17 +23,19 @@ from arena.motions.replay import Replay
 from arena.motions.track import Track
 from arena.nose import Nose
 from arena.recording import Recording
+from arena.sharding import is_whole
 
 VIEWS = 700
 
 
 class Toy:
-    """A camera whose pixels are a hash of the pose; it can be told to kill its process at some call."""
+    """A camera whose pixels are a hash of the pose; it may be slow, or kill its process at some call."""
 
     height, width = 4, 6
 
-    def __init__(self, gain: int = 1, kill_at: int | None = None) -> None:
+    def __init__(self, gain: int = 1, kill_at: int | None = None, pause: float = 0.0) -> None:
         self.gain = gain
+        self.pause = pause
         self.kill_at = kill_at
         self.calls: list[int] = []
 
@@ -41,6 +47,7 @@ class Toy:
             os.kill(os.getpid(), signal.SIGKILL)
         assert isinstance(arena, Arena)
         self.calls.append(len(poses))
+        time.sleep(self.pause)
         bits = np.ascontiguousarray(poses).view(np.uint64).sum(axis=1) * np.uint64(self.gain)
         pixels = np.arange(4 * 6 * 3, dtype=np.uint64).reshape(4, 6, 3)
         return (bits[:, None, None, None] * (pixels + np.uint64(1)) >> np.uint64(20)).astype(np.uint8)
@@ -154,23 +161,22 @@ def test_whole_recording_is_only_opened(tmp_path: Path) -> None:
     assert snapshot(tmp_path) == before
 
 
-def killed_at(path: Path, call: int) -> None:
+def started(work: str) -> subprocess.Popen[bytes]:
     script = f"""
-        import importlib.util, sys
+        import importlib.util
         spec = importlib.util.spec_from_file_location("toys", {str(Path(__file__))!r})
         toys = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(toys)
-        toys.go(toys.Toy(kill_at={call}), out={str(path)!r})
+        {work}
     """
-    root = Path(__file__).parents[2]
-    done = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(script)],
-        cwd=root,
-        check=False,
-        capture_output=True,
-        timeout=60,
-    )
-    assert done.returncode == -signal.SIGKILL, done.stderr.decode()
+    command = [sys.executable, "-c", textwrap.dedent(script)]
+    return subprocess.Popen(command, cwd=Path(__file__).parents[2])
+
+
+def killed_at(path: Path, call: int) -> None:
+    with started(f"toys.go(toys.Toy(kill_at={call}), out={str(path)!r})") as process:
+        process.wait(60)
+    assert process.returncode == -signal.SIGKILL
 
 
 def test_killed_exploration_goes_on_and_ends_with_the_same_bits(tmp_path: Path) -> None:
@@ -179,7 +185,9 @@ def test_killed_exploration_goes_on_and_ends_with_the_same_bits(tmp_path: Path) 
     killed_at(path, 0)
     with pytest.raises(ArenaError, match="0 of its 700 views"):
         Recording.open(path)
-    killed_at(path, 1)
+    # The first shard is whole before the third is painted; the second is being written then.
+    killed_at(path, 2)
+    (path / "views" / "c" / "1" / "0" / "0" / "0").unlink(missing_ok=True)
     with pytest.raises(ArenaError, match="256 of its 700 views"):
         Recording.open(path)
     stray = path / "views" / "c" / "1" / "0" / "0" / "0.0123.partial"
@@ -193,6 +201,57 @@ def test_killed_exploration_goes_on_and_ends_with_the_same_bits(tmp_path: Path) 
         for root in (path, whole)
     ]
     assert relative[0] == relative[1]
+
+
+def test_killed_at_any_moment_nothing_whole_is_done_again(tmp_path: Path) -> None:
+    views, rng = 20 * 256, np.random.default_rng()
+    go(out=tmp_path / "whole.zarr", views=views)
+    (tmp_path / "0").mkdir()
+    paths = [tmp_path / name / "rec.zarr" for name in "012"]
+    for path in paths:
+        with started(f"toys.go(toys.Toy(pause=0.02), views={views}, out={str(path)!r})") as process:
+            while not path.exists():
+                assert process.poll() is None
+                time.sleep(0.005)
+            time.sleep(rng.uniform(0, 20 * 0.02))
+            process.kill()
+        shard_files = sorted(path.glob("views/c/*/0/0/0"))
+        whole = [shard for shard in shard_files if is_whole(shard, 256)]
+        before = [(shard.stat().st_ino, shard.stat().st_mtime_ns) for shard in whole]
+        camera = Toy()
+        go(camera, out=path, views=views)
+        assert sum(camera.calls) == views - 256 * len(whole)
+        assert [(shard.stat().st_ino, shard.stat().st_mtime_ns) for shard in whole] == before
+        wanted = snapshot(tmp_path / "whole.zarr").values()
+        assert list(snapshot(path).values()) == list(wanted)
+
+
+def test_disk_that_fills_up_loses_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, real = tmp_path / "rec.zarr", sharding._write
+
+    def full(file: Path, images: np.ndarray) -> None:
+        if "1" in file.parts:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        real(file, images)
+
+    monkeypatch.setattr(sharding, "_write", full)
+    with pytest.raises(ArenaError, match="No space left on device; what is written is kept") as error:
+        go(out=path)
+    assert len(str(error.value).splitlines()) == 1
+    monkeypatch.undo()
+    camera = Toy()
+    assert_equal(go(camera, out=path), go())
+    assert camera.calls == [256, 188]
+
+
+def test_disk_that_is_full_from_the_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(zarr, "create_group", full)
+    with pytest.raises(ArenaError, match=r"cannot write .*: No space left on device$"):
+        go(out=tmp_path / "rec.zarr")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_shard_cut_short_is_rendered_again(tmp_path: Path) -> None:

@@ -37,6 +37,39 @@ def test_same_seed_same_smell() -> None:
     assert not np.array_equal(smell(nose, concentrations), smell(nose, concentrations, seed=1))
 
 
+@pytest.mark.parametrize("fluctuation", [0.0, 0.3])
+@pytest.mark.parametrize("cuts", [(), (1,), (0, 7, 7, 30), range(1, 50)])
+def test_smelt_in_pieces_it_is_the_same(fluctuation: float, cuts: tuple[int, ...]) -> None:
+    nose, rng = Nose(fluctuation=fluctuation, correlation_time=2.0), np.random.default_rng(4)
+    concentrations, times = rng.uniform(0.01, 1, (50, 3)), np.cumsum(rng.exponential(0.5, 50))
+    sniffer = nose.sniffer(3, np.random.default_rng(0))
+    pieces = [
+        sniffer.smell(concentration, time)
+        for concentration, time in zip(np.split(concentrations, cuts), np.split(times, cuts), strict=True)
+    ]
+    np.testing.assert_array_equal(np.concatenate(pieces), smell(nose, concentrations, times))
+
+
+def test_drift_follows_its_recurrence() -> None:
+    nose, rng = Nose(noise=0.2, fluctuation=0.3, correlation_time=2.0), np.random.default_rng(4)
+    times = np.cumsum(rng.exponential(0.5, 50))
+    normals = np.random.default_rng(0).standard_normal((50, 2, 3))
+    gain, wanted = 0.3 * normals[0, 1], []
+    for view, (sniff, shock) in enumerate(normals):
+        if view:
+            memory = np.exp((times[view - 1] - times[view]) / 2.0)
+            gain = memory * gain + 0.3 * np.sqrt(1 - memory**2) * shock
+        wanted.append(0.4 * np.exp(0.2 * sniff + gain))
+    np.testing.assert_allclose(smell(nose, np.full((50, 3), 0.4), times), wanted, rtol=1e-6)
+
+
+def test_time_cannot_run_back_between_calls() -> None:
+    sniffer = Nose().sniffer(1, np.random.default_rng(0))
+    sniffer.smell(np.ones((2, 1)), np.array([0.0, 3.0]))
+    with pytest.raises(ArenaError, match="times"):
+        sniffer.smell(np.ones((1, 1)), np.array([2.9]))
+
+
 def test_fluctuation_is_stationary_and_forgets_at_its_time_constant() -> None:
     nose = Nose(noise=0.0, fluctuation=0.3, correlation_time=2.0)
     times = np.array([0.0, 0.1, 0.5, 0.5, 3.0, 40.0])

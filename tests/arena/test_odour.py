@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import k0, k1
 
+from arena import odour
 from arena.arena import Arena
 from arena.errors import ArenaError
 from arena.odour import FAINTEST, OdourField
@@ -89,6 +90,71 @@ def test_source_and_receiver_can_be_exchanged() -> None:
     pair = room._centres[[20, 90], [60, 30]]
     found = dataclasses.replace(room, sources=pair).concentration(pair)
     assert found[1, 0] == pytest.approx(found[0, 1], rel=1e-9)
+
+
+def plain(odours: OdourField, xy: np.ndarray, order: tuple[int, int]) -> np.ndarray:
+    """Log concentration or its slope by cubic convolution, as written in Keys (1981), table 1."""
+
+    def kernel(s: np.ndarray) -> np.ndarray:
+        s = np.abs(s)
+        near, far = 1.5 * s**3 - 2.5 * s**2 + 1, -0.5 * s**3 + 2.5 * s**2 - 4 * s + 2
+        return np.where(s < 1, near, np.where(s < 2, far, 0))
+
+    def weights(at: np.ndarray, taps: np.ndarray, step: float, order: int) -> np.ndarray:
+        away, h = (at[:, None] - taps) / step, 1e-6
+        return (kernel(away + h) - kernel(away - h)) / (2 * h * step) if order else kernel(away)
+
+    log, reached, _ = odours._table
+    low = np.array(odours.bounds[:2])
+    taps = [low[axis] + (np.arange(log.shape[axis]) - 1.5) * odours._step[axis] for axis in (0, 1)]
+    wx, wy = (weights(xy[:, axis], taps[axis], odours._step[axis], order[axis]) for axis in (0, 1))
+    i, j = np.minimum((xy - low) // odours._step, np.array(reached.shape[:2]) - 1).astype(int).T
+    found = np.einsum("pi,pj,ijk->pk", wx, wy, log)
+    return np.where(reached[i, j], found, 0.0 if any(order) else np.log(FAINTEST))
+
+
+@pytest.mark.parametrize("count", [1, 400])
+@pytest.mark.parametrize("walls", [(), [[(0.3, -2.5), (0.3, 2.5)]]])
+def test_kernel_agrees_with_a_plain_convolution(walls: object, count: int) -> None:
+    odours = field(walls, sources=[(-1.5, -1.0), (1.6, 0.9)])
+    points = np.random.default_rng(0).uniform(ROOM[:2], ROOM[2:], (count, 2))
+    points = np.vstack([points, [ROOM[:2], ROOM[2:], (-3.0, 2.5), (0.0, -2.5)]])[-count:]
+    logarithm, by_x, by_y = (plain(odours, points, order) for order in ((0, 0), (1, 0), (0, 1)))
+    found = odours.concentration(points)
+    np.testing.assert_allclose(found, np.exp(logarithm), rtol=1e-12)
+    slopes = found[..., None] * np.stack([by_x, by_y], axis=-1)
+    np.testing.assert_allclose(odours.gradient(points), slopes, rtol=1e-7, atol=1e-8)
+
+
+def test_points_may_lie_anyhow_in_memory() -> None:
+    odours, poses = field(), np.random.default_rng(0).uniform(-2, 2, (9, 3))
+    wanted = odours.concentration(poses[:, :2].copy())
+    np.testing.assert_array_equal(odours.concentration(poses[:, :2]), wanted)
+    np.testing.assert_array_equal(odours.concentration(np.asfortranarray(poses[:, :2])), wanted)
+    single = poses[:, :2].astype(np.float32)
+    np.testing.assert_array_equal(odours.concentration(single), odours.concentration(single.astype(float)))
+
+
+def test_equal_rooms_are_solved_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    solved = []
+    real = odour.splu
+    monkeypatch.setattr(odour, "splu", lambda matrix: solved.append(matrix) or real(matrix))
+    sources = [(0.123, 0.456), (1.0, 1.0), (-1.0, 0.3)]
+    here = np.zeros((1, 2))
+    first, other = field(sources=sources), field(sources=sources)
+    assert first == other
+    assert hash(first) == hash(other)
+    np.testing.assert_array_equal(first.concentration(here), other.concentration(here))
+    assert len(solved) == 1
+    different = [
+        {"decay_length": 1.4},
+        {"walls": [[(0, 1), (1, 1)]]},
+        {"cell": 0.06},
+        {"sources": sources[:2]},
+    ]
+    for fields in different:
+        assert field(**{"sources": sources, **fields}) != first
+    assert first != "first"
 
 
 @pytest.mark.parametrize("name", ["open_field", "furnished", "pillar"])

@@ -1,0 +1,212 @@
+"""The gymnasium environment: an animal in a room, steered by someone who senses what it senses."""
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import cv2
+import gymnasium
+import numpy as np
+from jaxtyping import UInt8
+from pydantic import Field
+
+from arena.arena import Arena
+from arena.body import Body, Drive
+from arena.camera import Camera
+from arena.errors import ArenaError
+from arena.exploration import Eye
+from arena.nose import Nose
+from arena.settings import Settings
+from arena.topview import TopView
+
+Observation = dict[str, np.ndarray]
+Reward = Callable[[Observation, Observation], float]
+"""Judges a step by what was sensed before and after it."""
+
+TRACK = 0.23
+"""Distance between the wheels of a Turtlebot 2, m."""
+_BODY, _CAMERA, _NOSE = Body(), Camera.panoramic(92, 15), Nose()
+_FLOAT32 = np.finfo(np.float32)
+_FRAME = (240, 480)
+"""Rows of a rendered frame, and most columns of the view in it."""
+
+
+class OdourClimbed(Settings):
+    r"""Reward the climb of one odour as it is smelt, log c(after) − log c(before).
+
+    Parameters
+    ----------
+    odorant
+        Which, counted from 0.
+
+    Raises
+    ------
+    ArenaError
+        When there is no such odorant.
+    """
+
+    odorant: Annotated[int, Field(ge=0)] = 0
+
+    def __call__(self, before: Observation, after: Observation) -> float:
+        """Judge a step."""
+        try:
+            return math.log(after["odour"].item(self.odorant)) - math.log(before["odour"].item(self.odorant))
+        except IndexError:
+            raise ArenaError(
+                f"there is no odorant {self.odorant} to climb, the room has {len(after['odour'])} odour "
+                "sources; choose another one, another room or another reward"
+            ) from None
+
+
+_CLIMB = OdourClimbed()
+
+
+class Explorer(gymnasium.Env[Observation, np.ndarray]):
+    """An animal that sees and smells a room: `gymnasium.make("arena/Explorer-v0", arena="furnished")`.
+
+    An observation is `{"view": (height, width, 3) uint8, "odour": (odorants,) float32}`, concentrations as
+    the nose smells them. An action is two numbers in [−1, 1]: speed over `body.max_speed` and turn rate over
+    `body.max_turn`, or the speeds of the left and the right wheel over `body.max_speed`; what is too much the
+    body cuts. No state ends an episode; gymnasium truncates it after `max_episode_steps` (2000).
+
+    `reset(options={"pose": (x, y, heading)})` chooses the start, which is drawn from free space otherwise.
+    The truth is in `info` only: `pose` (x, y in m, heading in rad) and `touched`, whether the last step was
+    stopped by a wall or the platform's border.
+
+    Parameters
+    ----------
+    arena
+        A room, the name of one in the gallery, or the path of a TOML file.
+    camera, nose, body
+        The animal.
+    control
+        "velocity" or "wheels".
+    reward
+        Judges a step by the observations before and after it; the climb of the first odour unless told.
+    dt
+        Length of a step, s.
+    render_mode
+        "rgb_array" for frames with the view beside a top view; None for none.
+
+    Raises
+    ------
+    ArenaError
+        For parameters, options and actions that mean nothing, and for steps before the first reset.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 20}  # noqa: RUF012
+
+    def __init__(
+        self,
+        arena: Arena | str | Path,
+        *,
+        camera: Eye = _CAMERA,
+        nose: Nose = _NOSE,
+        body: Body = _BODY,
+        control: Literal["velocity", "wheels"] = "velocity",
+        reward: Reward = _CLIMB,
+        dt: float = 0.05,
+        render_mode: Literal["rgb_array"] | None = None,
+    ) -> None:
+        if not 0 < dt < math.inf:
+            raise ArenaError(f"dt is {dt} s; give a positive length of a step")
+        if control not in ("velocity", "wheels"):
+            raise ArenaError(f"control is {control!r}; choose 'velocity' or 'wheels'")
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ArenaError(f"render_mode is {render_mode!r}; choose 'rgb_array' or None")
+        self.arena = arena if isinstance(arena, Arena) else Arena.load(arena)
+        self.camera = camera
+        self.nose = nose
+        self.body = body
+        self.control = control
+        self.reward = reward
+        self.dt = dt
+        self.render_mode = render_mode
+        self.metadata = {**self.metadata, "render_fps": max(1, round(1 / dt))}
+        self.action_space = gymnasium.spaces.Box(-1, 1, (2,), np.float32)
+        odorants = len(self.arena.sources)
+        self.observation_space = gymnasium.spaces.Dict(  # type: ignore[assignment]
+            {
+                "view": gymnasium.spaces.Box(0, 255, (camera.height, camera.width, 3), np.uint8),
+                "odour": gymnasium.spaces.Box(_FLOAT32.tiny, _FLOAT32.max, (odorants,), np.float32),
+            }
+        )
+        self._top = TopView(self.arena, _FRAME[0])
+        self._drive: Drive | None = None
+        self._now = np.zeros(1)
+
+    def reset(
+        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """Begin an episode, at `options["pose"]` or anywhere in free space."""
+        super().reset(seed=seed)
+        start = _start(options or {})
+        if start is None:
+            ((x, y),) = self.arena.sample_free(1, self.body.radius, self.np_random).tolist()
+            start = x, y, self.np_random.uniform(-np.pi, np.pi)
+        self._drive = self.body.place(self.arena, start)
+        self._sniffer = self.nose.sniffer(len(self.arena.sources), self.np_random)
+        self._now[0] = 0.0
+        self._trail: list[tuple[float, float]] = []
+        return self._sense(self._drive, touched=False)
+
+    def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        """Obey for `dt` seconds, then look and smell."""
+        if self._drive is None:
+            raise ArenaError("the animal is nowhere yet; call reset() before the first step()")
+        command = np.asarray(action)
+        if command.shape != (2,):
+            raise ArenaError(
+                f"the action has shape {command.shape}; {self.control} takes two numbers between -1 and 1"
+            )
+        first, second = command.tolist()
+        if self.control == "wheels":
+            left, right = first * self.body.max_speed, second * self.body.max_speed
+            speed, turn = 0.5 * (left + right), (right - left) / TRACK
+        else:
+            speed, turn = first * self.body.max_speed, second * self.body.max_turn
+        touched = self._drive.step(speed, turn, self.dt)
+        self._now[0] += self.dt
+        before = self._sensed
+        after, info = self._sense(self._drive, touched=touched)
+        return after, self.reward(before, after), False, False, info
+
+    def render(self) -> UInt8[np.ndarray, "height width 3"] | None:
+        """Draw what the animal sees beside where it is."""
+        if self.render_mode is None:
+            return None
+        if self._drive is None:
+            raise ArenaError("the animal is nowhere yet; call reset() before render()")
+        view, (rows, most) = self._sensed["view"], _FRAME
+        scale = min(rows / view.shape[0], most / view.shape[1])
+        size = max(1, round(scale * view.shape[1])), max(1, round(scale * view.shape[0]))
+        shown = cv2.resize(view, size, interpolation=cv2.INTER_NEAREST if scale > 1 else cv2.INTER_AREA)
+        frame = np.zeros((rows, size[0], 3), np.uint8)
+        above = (rows - size[1]) // 2
+        frame[above : above + size[1]] = shown
+        top = self._top.draw(self._drive.pose, self.body.radius, np.array(self._trail))
+        return np.hstack([frame, top])
+
+    def _sense(self, drive: Drive, *, touched: bool) -> tuple[Observation, dict[str, Any]]:
+        pose = np.array([drive.pose])
+        view = self.camera.render(self.arena, pose)[0]
+        odour = self._sniffer.smell(self.arena.odours.concentration(pose[:, :2]), self._now)[0]
+        if self.render_mode is not None:
+            self._trail.append(drive.pose[:2])
+        self._sensed = {"view": view, "odour": odour}
+        return self._sensed, {"pose": pose[0], "touched": touched}
+
+
+def _start(options: Mapping[str, Any]) -> tuple[float, float, float] | None:
+    """Read the options of `Explorer.reset`."""
+    unknown = options.keys() - {"pose"}
+    if unknown:
+        raise ArenaError(f"unknown options {sorted(unknown)}; the only one is 'pose', (x, y, heading)")
+    if "pose" not in options:
+        return None
+    try:
+        x, y, heading = (float(part) for part in options["pose"])
+    except (TypeError, ValueError):
+        raise ArenaError(f"the option pose is {options['pose']!r}; give x, y (m) and heading (rad)") from None
+    return x, y, heading

@@ -1,0 +1,44 @@
+"""Recorded views per second, against rendering alone."""
+
+import tempfile
+from itertools import count
+from pathlib import Path
+
+from arena import Brownian, Camera, explore
+from benchmarks.timing import ROOM, Figures, one_core, poses, versus
+
+VIEWS = 2560
+ROUNDS = 5
+
+
+def exploring() -> Figures:
+    """Panoramic strips on one core and on all, in memory and on disk; each in turn with rendering alone."""
+    with one_core():
+        alone = measured()
+    return {"one_core": alone, "all_cores": measured()}
+
+
+def measured() -> Figures:
+    """Walk, look, smell and keep, over looking alone at the same poses."""
+    camera, where = Camera.panoramic(), poses(VIEWS)
+    with tempfile.TemporaryDirectory() as folder:
+        name = count()
+
+        def render() -> int:
+            for first in range(0, VIEWS, 256):
+                camera.render(ROOM, where[first : first + 256])
+            return VIEWS
+
+        def keep() -> int:
+            return len(explore(ROOM, Brownian(), camera, views=VIEWS))
+
+        def write() -> int:
+            return len(explore(ROOM, Brownian(), camera, views=VIEWS, out=Path(folder) / f"{next(name)}"))
+
+        return {
+            kind: {"views_per_s": found["per_s"], "over_rendering": found["ratio"]}
+            for kind, found in (
+                ("memory", versus(keep, render, ROUNDS)),
+                ("disk", versus(write, render, ROUNDS)),
+            )
+        }

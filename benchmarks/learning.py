@@ -1,0 +1,44 @@
+"""How fast neurons learn, against scikit-learn."""
+
+import time
+
+import torch
+from sklearn.decomposition import IncrementalPCA
+
+from arena import Camera
+from benchmarks.timing import ROOM, Figures, poses
+from cogmap.threads import one_thread
+from neurons.oja import Sanger
+from neurons.retina import Retina
+
+VIEWS = 4000
+
+
+def learning() -> Figures:
+    """Time to 99 % of the variance that 60 components can capture, IncrementalPCA's over Sanger's."""
+    with one_thread():
+        strips = Retina(60, 360)(torch.from_numpy(Camera.panoramic().render(ROOM, poses(VIEWS))))
+        centred = strips - strips.mean(dim=0)
+        best = torch.linalg.svdvals(centred)[:60].square().sum()
+
+        def captured(weight: torch.Tensor) -> float:
+            basis = torch.linalg.qr(weight.T).Q
+            return float((centred @ basis).square().sum() / best)
+
+        layer = Sanger(strips.shape[1], 60, generator=torch.Generator().manual_seed(0))
+        started = time.perf_counter()
+        spent = 0.0
+        while captured(layer.weight) < 0.99:
+            started = time.perf_counter()
+            for batch in strips.split(256):
+                layer.partial_fit(batch)
+            spent += time.perf_counter() - started
+        peer = IncrementalPCA(60)
+        started, taken = time.perf_counter(), 0.0
+        for batch in strips.split(256):
+            started = time.perf_counter()
+            peer.partial_fit(batch.numpy())
+            taken += time.perf_counter() - started
+            if captured(torch.from_numpy(peer.components_).float()) >= 0.99:
+                break
+    return {"sanger_seconds": spent, "incremental_pca_over_sanger": taken / spent}

@@ -1,0 +1,138 @@
+"""Issue 3, points "Recording" and 4, at full size: killed explorations, memory, a disk that is full."""
+
+import hashlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from arena.sharding import file, is_whole, shards
+
+pytestmark = pytest.mark.full
+
+ROOT = Path(__file__).parents[2]
+KILLS, VIEWS = 20, 20_000
+MOST_BYTES = 10**9
+
+
+def command(out: Path, views: int) -> list[str]:
+    return [sys.executable, "-m", "cogmap", "explore", "furnished", "--views", str(views), "--out", str(out)]
+
+
+def run(out: Path, views: int = VIEWS) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command(out, views), cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+def content(path: Path) -> dict[str, str]:
+    files = (found for found in path.rglob("*") if found.is_file())
+    return {str(one.relative_to(path)): hashlib.sha256(one.read_bytes()).hexdigest() for one in files}
+
+
+def complete(path: Path) -> dict[str, tuple[int, int]]:
+    """Which shards are whole, by inode and time of their last change."""
+    files = [(file(path / "views", rows), rows.stop - rows.start) for rows in shards(VIEWS)]
+    found = [one for one, count in files if is_whole(one, count)]
+    return {str(one): (one.stat().st_ino, one.stat().st_mtime_ns) for one in found}
+
+
+def when_begun(path: Path) -> float:
+    while not path.exists():
+        time.sleep(0.01)
+    return time.perf_counter()
+
+
+def test_killed_twenty_times(tmp_path: Path) -> None:
+    whole = tmp_path / "whole.zarr"
+    with subprocess.Popen(command(whole, VIEWS), cwd=ROOT, stdout=subprocess.DEVNULL) as undisturbed:
+        begun = when_begun(whole)
+    assert undisturbed.returncode == 0
+    writing = time.perf_counter() - begun
+    wanted = content(whole)
+    assert len([name for name in wanted if name.startswith("views/c/")]) == len(shards(VIEWS))
+    rng = np.random.default_rng()
+    kept = []
+    for kill in range(KILLS):
+        path = tmp_path / f"{kill}.zarr"
+        moment = rng.uniform(0, writing)
+        with subprocess.Popen(command(path, VIEWS), cwd=ROOT, stdout=subprocess.DEVNULL) as victim:
+            when_begun(path)
+            time.sleep(moment)
+            victim.send_signal(signal.SIGKILL)
+        before = complete(path)
+        again = run(path)
+        assert again.returncode == 0, again.stderr
+        after = complete(path)
+        same = {name: after[name] for name in before} == before
+        kept.append(len(before))
+        sys.stdout.write(
+            f"kill {kill + 1} after {moment:.2f} of {writing:.2f} s, {len(before)} of {len(after)} shards "
+            f"whole: untouched {same}, bit-identical {content(path) == wanted}\n"
+        )
+        assert same
+        assert content(path) == wanted
+        subprocess.run(["rm", "-r", str(path)], check=True)  # noqa: S607
+    assert any(0 < count < len(shards(VIEWS)) for count in kept), "no kill came while views were written"
+
+
+def test_memory_of_a_hundred_thousand_views(tmp_path: Path) -> None:
+    script = """
+        import sys
+        from arena import Arena, Brownian, Camera, explore
+        explore(Arena.load("furnished"), Brownian(), Camera.perspective(), views=100_000, out=sys.argv[1])
+    """
+    started = time.perf_counter()
+    pid = subprocess.Popen([sys.executable, "-c", textwrap.dedent(script), tmp_path / "rec"], cwd=ROOT).pid
+    _, status, usage = os.wait4(pid, 0)
+    peak = 1024 * usage.ru_maxrss
+    size = sum(one.stat().st_size for one in (tmp_path / "rec").rglob("*") if one.is_file())
+    sys.stdout.write(
+        f"100,000 views of 320x240 in {time.perf_counter() - started:.0f} s: peak {peak / 1e9:.3f} ≤ "
+        f"{MOST_BYTES / 1e9:g} GB of memory, {size / 1e9:.2f} GB on disk\n"
+    )
+    subprocess.run(["rm", "-r", str(tmp_path / "rec")], check=True)  # noqa: S607
+    assert status == 0
+    assert peak <= MOST_BYTES
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A file system of 8 MB."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    made = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=8m", "tmpfs", str(disk)],  # noqa: S607
+        check=False,
+        capture_output=True,
+    )
+    if made.returncode:
+        pytest.skip("mounting a small file system takes rights that this user lacks")
+    yield disk
+    subprocess.run(["umount", str(disk)], check=True)  # noqa: S607
+
+
+def test_disk_that_is_full(small_disk: Path, tmp_path: Path) -> None:
+    views = 2000
+    assert run(tmp_path / "whole.zarr", views).returncode == 0
+    failed = run(small_disk / "rec.zarr", views)
+    sys.stdout.write(failed.stderr)
+    assert failed.returncode == 2
+    assert failed.stdout == ""
+    (sentence,) = failed.stderr.splitlines()
+    assert "No space left on device; what is written is kept" in sentence
+    kept = complete(small_disk / "rec.zarr")
+    assert kept
+    assert not list(small_disk.rglob("*.partial"))
+    subprocess.run(["mount", "-o", "remount,size=200m", str(small_disk)], check=True)  # noqa: S607
+    assert run(small_disk / "rec.zarr", views).returncode == 0
+    after = complete(small_disk / "rec.zarr")
+    assert {name: after[name] for name in kept} == kept
+    assert content(small_disk / "rec.zarr") == content(tmp_path / "whole.zarr")
+    assert json.loads((small_disk / "rec.zarr" / "zarr.json").read_text())["attributes"]["views"] == views
