@@ -24,8 +24,6 @@ Observation = dict[str, np.ndarray]
 Reward = Callable[[Observation, Observation], float]
 """Judges a step by what was sensed before and after it."""
 
-TRACK = 0.23
-"""Distance between the wheels of a Turtlebot 2, m."""
 _BODY, _CAMERA, _NOSE = Body(), Camera.panoramic(92, 15), Nose()
 _FLOAT32 = np.finfo(np.float32)
 _FRAME = (240, 480)
@@ -163,7 +161,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         first, second = command.tolist()
         if self.control == "wheels":
             left, right = first * self.body.max_speed, second * self.body.max_speed
-            speed, turn = 0.5 * (left + right), (right - left) / TRACK
+            speed, turn = self.body.from_wheels(left, right)
         else:
             speed, turn = first * self.body.max_speed, second * self.body.max_turn
         touched = self._drive.step(speed, turn, self.dt)
@@ -190,7 +188,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
 
     def _sense(self, drive: Drive, *, touched: bool) -> tuple[Observation, dict[str, Any]]:
         pose = np.array([drive.pose])
-        view = self.camera.render(self.arena, pose)[0]
+        view = self.camera.render(self.arena, pose, rng=self.np_random)[0]
         odour = self._sniffer.smell(self.arena.odours.concentration(pose[:, :2]), self._now)[0]
         if self.render_mode is not None:
             self._trail.append(drive.pose[:2])

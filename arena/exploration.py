@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, UInt8
@@ -35,9 +35,9 @@ class Eye(Protocol):
         ...
 
     def render(
-        self, arena: Arena, poses: Float[np.ndarray, "views 3"]
+        self, arena: Arena, poses: Float[np.ndarray, "views 3"], *, rng: np.random.Generator
     ) -> UInt8[np.ndarray, "views height width 3"]:
-        """Paint the views from poses; one view's pixels do not depend on the others."""
+        """Paint the views from poses, with what sensor noise there is from the generator."""
         ...
 
     def model_dump(self) -> dict[str, Any]:
@@ -66,7 +66,7 @@ def explore(
     views
         How many to take; None takes what the motion does by default.
     seed
-        Varies the walk and the nose's noise, never the room.
+        Varies the walk and the noise of the nose and the camera, never the room.
     out
         Folder to stream to, 256 views at a time. The same call after a kill goes on where it stopped and ends
         with the same bits; a recording that is whole is only opened. None keeps all in memory.
@@ -109,16 +109,10 @@ def explore(
     views = len(walk.times)
     shape = (views, camera.height, camera.width, 3)
 
-    def look(images: np.ndarray | Writer, missing: list[slice]) -> None:
-        with tqdm(total=views, unit="view", disable=not progress) as bar:
-            bar.update(views - sum(rows.stop - rows.start for rows in missing))
-            for rows in missing:
-                images[rows] = camera.render(arena, walk.poses[rows])
-                bar.update(rows.stop - rows.start)
-
+    eyes = _Looking(arena, camera, walk.poses, seed, progress)
     if path is None:
         images = np.empty(shape, np.uint8)
-        look(images, shards(views))
+        eyes.look(images, shards(views))
         return Recording(views=images, **columns, attributes=attributes)
     if begun is None:
         with storage.new_folder(path) as folder:
@@ -130,13 +124,33 @@ def explore(
     missing = shards(views) if begun is None else begun.missing
     try:
         with storage.writable_views(path, missing) as writer:
-            look(writer, missing)
+            eyes.look(writer, missing)
     except OSError as error:
         raise ArenaError(
             f"cannot write {path}: {error.strerror or error}; what is written is kept, and the same command "
             "goes on from there"
         ) from None
     return Recording.open(path)
+
+
+class _Looking(NamedTuple):
+    """A walk to be seen."""
+
+    arena: Arena
+    camera: Eye
+    poses: Float[np.ndarray, "views 3"]
+    seed: int
+    progress: bool
+
+    def look(self, images: np.ndarray | Writer, missing: list[slice]) -> None:
+        """Paint the missing views; each shard has noise of its own, so that it can be made again alone."""
+        with tqdm(total=len(self.poses), unit="view", disable=not self.progress) as bar:
+            bar.update(len(self.poses) - sum(rows.stop - rows.start for rows in missing))
+            for rows in missing:
+                noise = np.random.SeedSequence(self.seed, spawn_key=(2, rows.start))
+                rng = np.random.default_rng(noise)
+                images[rows] = self.camera.render(self.arena, self.poses[rows], rng=rng)
+                bar.update(rows.stop - rows.start)
 
 
 def _parameters(part: Eye | Motion | Body | Nose) -> dict[str, Any]:

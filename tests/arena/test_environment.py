@@ -14,7 +14,7 @@ from gymnasium.utils.env_checker import check_env
 from arena.arena import Arena
 from arena.body import Body
 from arena.camera import Camera
-from arena.environment import TRACK, Explorer, Observation, OdourClimbed
+from arena.environment import Explorer, Observation, OdourClimbed
 from arena.errors import ArenaError
 from arena.nose import Nose
 
@@ -31,8 +31,9 @@ class Toy:
     def model_dump(self) -> dict[str, Any]:
         return {}
 
-    def render(self, arena: Arena, poses: np.ndarray) -> np.ndarray:
+    def render(self, arena: Arena, poses: np.ndarray, *, rng: np.random.Generator) -> np.ndarray:
         assert isinstance(arena, Arena)
+        assert isinstance(rng, np.random.Generator)
         bits = poses.view(np.uint64).sum(axis=1) >> np.uint64(20)
         return np.broadcast_to(bits.astype(np.uint8)[:, None, None, None], (len(poses), 2, 3, 3)).copy()
 
@@ -121,7 +122,7 @@ def test_wheels_roll_along_the_arc_that_they_span() -> None:
     left, right = 0.3, 0.4
     for _ in range(50):
         *_, info = env.step(np.array([left, right]))
-    angle = 0.65 * (right - left) / TRACK
+    angle = 0.65 * (right - left) / Body().wheel_base
     radius = 0.65 * (left + right) / 2 / angle
     wanted = radius * np.sin(angle), radius * (1 - np.cos(angle)), angle
     np.testing.assert_allclose(info["pose"], wanted, atol=1e-4)
@@ -226,7 +227,6 @@ def test_many_at_once_are_each_as_alone(kind: Callable[..., Any]) -> None:
     together.close()
 
 
-@pytest.mark.xfail(reason="a single view is painted by the parallel kernel", strict=True)
 def test_workers_can_be_forked_after_rendering() -> None:
     """GNU OpenMP ends a forked process that runs in parallel after its parent has."""
     script = """

@@ -42,10 +42,11 @@ class Toy:
     def model_dump(self) -> dict[str, object]:
         return {"gain": self.gain, "size": (self.height, self.width)}
 
-    def render(self, arena: Arena, poses: np.ndarray) -> np.ndarray:
+    def render(self, arena: Arena, poses: np.ndarray, *, rng: np.random.Generator) -> np.ndarray:
         if len(self.calls) == self.kill_at:
             os.kill(os.getpid(), signal.SIGKILL)
         assert isinstance(arena, Arena)
+        assert isinstance(rng, np.random.Generator)
         self.calls.append(len(poses))
         time.sleep(self.pause)
         bits = np.ascontiguousarray(poses).view(np.uint64).sum(axis=1) * np.uint64(self.gain)
@@ -72,7 +73,7 @@ def test_recording_holds_what_was_seen_and_smelt_on_the_way() -> None:
     rec = go(nose=Nose(noise=0.0))
     arena = Arena.load("open_field")
     assert rec.views.shape == (VIEWS, 4, 6, 3)
-    np.testing.assert_array_equal(rec.views, Toy().render(arena, rec.poses))
+    np.testing.assert_array_equal(rec.views, Toy().render(arena, rec.poses, rng=np.random.default_rng(0)))
     wanted = arena.odours.concentration(rec.poses[:, :2])
     np.testing.assert_array_equal(rec.odours, wanted.astype(np.float32))
     assert (np.diff(rec.times) > 0).all()
@@ -327,8 +328,9 @@ def test_in_memory_the_images_are_held_once() -> None:
     class Large(Toy):
         height, width = 100, 100
 
-        def render(self, arena: Arena, poses: np.ndarray) -> np.ndarray:
+        def render(self, arena: Arena, poses: np.ndarray, *, rng: np.random.Generator) -> np.ndarray:
             assert isinstance(arena, Arena)
+            assert isinstance(rng, np.random.Generator)
             return np.ones((len(poses), 100, 100, 3), np.uint8)
 
     go(views=10)
