@@ -6,6 +6,7 @@ import math
 from functools import cached_property
 from typing import Annotated, Literal
 
+import numba
 import numpy as np
 from jaxtyping import Float, Int32, UInt8, UInt32
 from pydantic import Field
@@ -148,11 +149,9 @@ class Camera(Settings):
         faces, floor, texels, place = arena.scene
         sky = backdrop(lens, floor[:3], arena.ceiling, arena.zenith)
         words = _words(out)
-        if len(poses) < _FEW:
-            for pose, image, row in zip(poses, out, words, strict=True):
-                painting.paint(pose, faces, lens, floor, texels, place, sky, ray, image, row)
-        else:
-            painting.render(poses, faces, lens, floor, texels, place, sky, ray, out, words)
+        alone = len(poses) < _FEW or numba.get_num_threads() == 1
+        render = painting.render_alone if alone else painting.render
+        render(poses, faces, lens, floor, texels, place, sky, ray, out, words)
         if rng is not None and self.noise:
             for image in out:
                 grain = rng.standard_normal(image.shape, dtype=np.float32)

@@ -47,8 +47,11 @@ SIGHT = np.dtype([(name, "f8") for name in ("ahead", "left", "at", "along", "acr
 """A face as seen from a pose: the ray towards (a, l) meets it at 1 / depth = ahead a + left l, which is
 at + depth (along a + across l) m along its `length` m. Its left is seen if aside > 0."""
 
-TOUCH = np.dtype([("face", "i8"), ("begin", "f8"), ("end", "f8"), ("first", "f8"), ("last", "f8")])
-"""A face in a column: where in it (0 to 1) the face begins and ends, and 1 / depth at the column's sides."""
+TOUCH = np.dtype(
+    [("face", "i8"), *((name, "f8") for name in ("begin", "end", "first", "last", "start", "stop"))]
+)
+"""A face in a column: where in it (0 to 1) the face begins and ends, and at the column's two sides 1 / depth
+and how far along its material (m) it is met."""
 
 HIT = np.dtype([("touch", "i8"), ("near", "f8")])
 """A face that a ray meets, by its number in the column, and 1 / depth."""
@@ -158,25 +161,45 @@ def direction(x: float, lens: Lens) -> tuple[float, float]:
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
-def touch(
-    c: int, rows: np.ndarray, rays: tuple, sights: np.ndarray, span: np.ndarray, touches: np.ndarray
-) -> None:
-    """Fill `touches` with the faces of these rows of `span` as they lie in column c, between two rays."""
-    (a0, l0), (a1, l1) = rays
-    for k in range(len(rows)):
-        row, one = rows[k], touches[k]
-        one.face = row if row < len(sights) else row - len(sights)
-        sight = sights[one.face]
-        one.begin, one.end = max(span[row, 0] - c, 0.0), min(span[row, 1] - c, 1.0)
-        one.first = sight.ahead * a0 + sight.left * l0
-        one.last = sight.ahead * a1 + sight.left * l1
+def nearness(one: np.record, x: float) -> float:
+    """1 / depth of a touching face at x."""
+    return min(max(one.first + x * (one.last - one.first), 1.0 / FARTHEST), 1.0 / NEAREST)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
-def nearness(one: np.record, x: float) -> float:
-    """1 / depth of a touching face at x."""
-    return min(max(one.first + x * (one.last - one.first), 1.0 / FARTHEST), 1.0 / NEAREST)
+def along(x: float, one: np.record, face: np.record, sight: np.record, rays: tuple) -> float:
+    """How far along its material (m) a touching face is met at x."""
+    (a0, l0), (a1, l1) = rays
+    ahead, left = a0 + x * (a1 - a0), l0 + x * (l1 - l0)
+    where = sight.at + (sight.along * ahead + sight.across * left) / nearness(one, x)
+    return face.offset + min(max(where, 0.0), sight.length)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
+def touch(
+    c: int,
+    low: int,
+    high: int,
+    listed: np.ndarray,
+    rays: tuple,
+    faces: np.ndarray,
+    sights: np.ndarray,
+    span: np.ndarray,
+    touches: np.ndarray,
+) -> None:
+    """Fill touches[low:high] with the faces listed there as they lie in column c, between two rays."""
+    (a0, l0), (a1, l1) = rays
+    for k in range(low, high):
+        row, one = listed[k], touches[k]
+        one.face = row if row < len(sights) else row - len(sights)
+        face, sight = faces[one.face], sights[one.face]
+        one.begin, one.end = max(span[row, 0] - c, 0.0), min(span[row, 1] - c, 1.0)
+        one.first = sight.ahead * a0 + sight.left * l0
+        one.last = sight.ahead * a1 + sight.left * l1
+        one.start = along(0.0, one, face, sight, rays)
+        one.stop = along(1.0, one, face, sight, rays)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -191,16 +214,19 @@ def _hidden(one: np.record, veil: np.record, faces: np.ndarray, lens: Lens) -> b
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
-def split(count: int, faces: np.ndarray, lens: Lens, touches: np.ndarray, edges: np.ndarray) -> int:
-    """Cut a column where a face in sight begins or ends; the number of parts."""
+def split(low: int, high: int, faces: np.ndarray, lens: Lens, touches: np.ndarray, edges: np.ndarray) -> int:
+    """Cut a column where a face in sight begins or ends; the number of parts.
+
+    The column's faces are touches[low:high], here as below.
+    """
     veil, crest = -1, -np.inf  # the face that fills the column and rises highest
-    for k in range(count):
+    for k in range(low, high):
         one = touches[k]
         rise = nearness(one, 0.5) * (faces[one.face].height - lens.eye)
         if one.begin == 0.0 and one.end == 1.0 and rise > crest:
             veil, crest = k, rise
     edges[0], edges[1], parts = 0.0, 1.0, 1
-    for k in range(count):
+    for k in range(low, high):
         one = touches[k]
         if one.begin == 0.0 and one.end == 1.0:
             continue
@@ -221,11 +247,17 @@ def split(count: int, faces: np.ndarray, lens: Lens, touches: np.ndarray, edges:
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
 def meet(
-    x: float, count: int, faces: np.ndarray, sights: np.ndarray, touches: np.ndarray, hits: np.ndarray
+    x: float,
+    low: int,
+    high: int,
+    faces: np.ndarray,
+    sights: np.ndarray,
+    touches: np.ndarray,
+    hits: np.ndarray,
 ) -> int:
     """Find which touching faces the ray at x meets, from near to far; their number."""
     met = 0
-    for k in range(count):
+    for k in range(low, high):
         one = touches[k]
         if one.begin <= x < one.end:
             near = nearness(one, x)
@@ -255,9 +287,9 @@ def _middle(
 ) -> int:
     """Find what the ray through the middle of column c meets, exactly."""
     ray = direction(c + 0.5, lens)
-    rows = listed[first[c] : first[c + 1]]
-    touch(c, rows, (ray, ray), sights, span, touches)
-    return meet(0.5, len(rows), faces, sights, touches, hits)
+    low, high = first[c], first[c + 1]
+    touch(c, low, high, listed, (ray, ray), faces, sights, span, touches)
+    return meet(0.5, low, high, faces, sights, touches, hits)
 
 
 @njit(cache=True, error_model="numpy")
@@ -265,8 +297,8 @@ def _middle(
 def _measure(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
     """Measure the distances from one pose."""
     sights, span = np.empty(len(faces), SIGHT), np.empty((2 * len(faces), 2))
-    touches, hits = np.empty(len(span), TOUCH), np.empty(len(span), HIT)
     first, listed = look(pose, faces, lens, sights, span)
+    touches, hits = np.empty(len(listed), TOUCH), np.empty(len(span), HIT)
     for c in range(lens.width):
         ahead, left = direction(c + 0.5, lens)
         met = _middle(c, first, listed, faces, lens, sights, span, touches, hits)
@@ -278,8 +310,8 @@ def _measure(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -
 def _name(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
     """Name the surface at the middle of every pixel of one view."""
     sights, span = np.empty(len(faces), SIGHT), np.empty((2 * len(faces), 2))
-    touches, hits = np.empty(len(span), TOUCH), np.empty(len(span), HIT)
     first, listed = look(pose, faces, lens, sights, span)
+    touches, hits = np.empty(len(listed), TOUCH), np.empty(len(span), HIT)
     horizon = 0.5 * lens.height
     for c in range(lens.width):
         met = _middle(c, first, listed, faces, lens, sights, span, touches, hits)

@@ -15,8 +15,10 @@ from arena.simd import add_three
 
 BLOCK = 128
 """Loops run over whole blocks of at most this many numbers: what remains after the last is slow, not SIMD."""
-_PURE = 1.75
+_PER_METRE = 1.0 / TEXEL
+_PURE = 1.9
 """Up to this many texels covered, one level is enough."""
+_HASTE = 1.0 / (2.0 - _PURE)
 
 
 class Ground(typing.NamedTuple):
@@ -40,7 +42,7 @@ def whole(count: int) -> int:
 @typing.no_type_check
 def fade_in(stretch: float) -> float:
     """How much of the next coarser level to mix in, so that none comes suddenly: all at 2 texels."""
-    return min(max((stretch - _PURE) / (2.0 - _PURE), 0.0), 1.0)
+    return min(max((stretch - _PURE) * _HASTE, 0.0), 1.0)
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -50,23 +52,39 @@ def _blend(
 ) -> None:
     """Fill part of `strip` with a weighted sum of three stretches of texels; a second layer is added.
 
-    Unsigned indices allow SIMD.
+    Unsigned indices allow SIMD. Where the third has no weight it is not read.
     """
     a, b, c = np.uint64(starts[0]), np.uint64(starts[1]), np.uint64(starts[2])
     wa, wb, wc = weight
-    to = np.uint64(at)
-    for n in range(whole(count)):
-        k = np.uint64(n)
-        mean = (
-            wa * np.float32(texels[a + k]) + wb * np.float32(texels[b + k]) + wc * np.float32(texels[c + k])
-        )
-        strip[to + k] = mean + strip[to + k] if layer > 0 else mean
+    to, length = np.uint64(at), whole(count)
+    if layer > 0:
+        for n in range(length):
+            k = np.uint64(n)
+            mean = (
+                wa * np.float32(texels[a + k])
+                + wb * np.float32(texels[b + k])
+                + wc * np.float32(texels[c + k])
+            )
+            strip[to + k] += mean
+    elif wc > 0:
+        for n in range(length):
+            k = np.uint64(n)
+            mean = (
+                wa * np.float32(texels[a + k])
+                + wb * np.float32(texels[b + k])
+                + wc * np.float32(texels[c + k])
+            )
+            strip[to + k] = mean
+    else:
+        for n in range(length):
+            k = np.uint64(n)
+            strip[to + k] = wa * np.float32(texels[a + k]) + wb * np.float32(texels[b + k])
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
 def unroll(
-    along: tuple,
+    stretch: tuple,
     up: tuple,
     level: int,
     gain: float,
@@ -75,11 +93,11 @@ def unroll(
     place: np.ndarray,
     strip: np.ndarray,
 ) -> None:
-    """Fill `strip` with the texture from texel up[0] to up[1], averaged along a stretch of wall (texels).
+    """Fill `strip` with the texture from texel up[0] to up[1], averaged along a stretch of wall (m).
 
-    The stretch is measured in texels of the level at which it covers one or two, hence touches at most three.
+    It is measured in texels of the level at which it covers one or two, hence touches at most three.
     """
-    u0, u1 = min(along), max(along)
+    u0, u1 = min(stretch) * _PER_METRE, max(stretch) * _PER_METRE
     fine = 0
     while u1 - u0 > 2.0 and fine < LEVELS[0] - 2:
         u0, u1, fine = 0.5 * u0, 0.5 * u1, fine + 1
@@ -129,7 +147,7 @@ def paint_wall(
     up: tuple,
     strip: np.ndarray,
     texel: np.ndarray,
-    mix: np.ndarray,
+    mix: tuple,
     column: np.ndarray,
 ) -> None:
     """Add a wall to the rows between two image heights; `up` is where on `strip` row 0 is, and texels a row.
@@ -142,7 +160,7 @@ def paint_wall(
     count = int(np.ceil(bottom)) - first
     size, pace = np.float32(max(step, 1.0)), np.float32(step)
     low, share = np.float32(v - (first + 0.5) * step) - np.float32(0.5) * size, np.float32(weight) / size
-    t, a, b, c = texel, mix[0], mix[1], mix[2]
+    t, (a, b, c) = texel, mix
     for k in range(whole(count)):
         t[k], a[k], b[k], c[k] = _weigh(low - np.float32(k) * pace, size, share)
     for k in (0, count - 1):  # these may be covered in part
@@ -226,10 +244,10 @@ def paint_ground(
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
 def paint_backdrop(
-    top: float, bottom: float, weight: float, backdrop: np.ndarray, column: np.ndarray
+    top: float, bottom: float, weight: float, backdrop: np.ndarray, behind: int, column: np.ndarray
 ) -> None:
     """Add the backdrop to the rows between two image heights."""
     for r in range(int(top), int(np.ceil(bottom))):
         share = np.float32(weight * (min(r + 1.0, bottom) - max(float(r), top)))
         for c in range(3):
-            column[4 * r + c] += share * np.float32(backdrop[4 * r + c])
+            column[4 * r + c] += share * np.float32(backdrop[behind, 4 * r + c])

@@ -19,7 +19,8 @@ CAMERAS = {
     "strip_92x15": Camera.panoramic(92, 15),
 }
 VIEWS = 200
-BATCH = 50
+BATCH = 8
+"""Views painted at a time, into the same images: what a core's cache holds."""
 
 
 def rendering() -> Figures:
@@ -41,10 +42,11 @@ def painting(camera: Camera, room: Arena = ROOM, views: int = VIEWS) -> Callable
     """Give work that paints views, some at a time, into the same images."""
     where = poses(views, room)
     batches = np.split(where, range(BATCH, views, BATCH))
+    images = np.empty((BATCH, camera.height, camera.width, 3), np.uint8)
 
     def paint() -> int:
         for batch in batches:
-            camera.render(room, batch)
+            camera.render(room, batch, out=images[: len(batch)])
         return views
 
     return paint
