@@ -236,7 +236,6 @@ def test_many_at_once_are_each_as_alone(kind: Callable[..., Any]) -> None:
     together.close()
 
 
-@pytest.mark.xfail(reason="a single view is painted by the parallel kernel", strict=True)
 def test_workers_can_be_forked_after_rendering() -> None:
     """GNU OpenMP ends a forked process that runs in parallel after its parent has."""
     script = """
