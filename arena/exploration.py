@@ -123,7 +123,7 @@ def explore(
         )
     missing = shards(views) if begun is None else begun.missing
     try:
-        with storage.writable_views(path, missing) as writer:
+        with storage.writable_views(path) as writer:
             eyes.look(writer, missing)
     except OSError as error:
         raise ArenaError(

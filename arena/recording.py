@@ -80,7 +80,7 @@ class Recording:
         """
         with storage.new_folder(Path(path)) as folder:
             storage.lay_out(folder, self.views.shape, self._columns, self.attributes)
-            with storage.writable_views(folder, []) as views:
+            with storage.writable_views(folder) as views:
                 for rows in shards(len(self)):
                     views[rows] = np.asarray(self.views[rows])
 

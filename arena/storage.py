@@ -70,14 +70,11 @@ def lay_out(
 
 
 @contextmanager
-def writable_views(path: Path, missing: list[slice]) -> Iterator[Writer]:
-    """Write the missing shards, after clearing away what a kill has left of them; see `sharding.writing`."""
-    folder = path / "views"
-    for rows in missing:
-        file(folder, rows).unlink(missing_ok=True)
-    for stray in folder.rglob("*.partial"):
+def writable_views(path: Path) -> Iterator[Writer]:
+    """Write shards of views, after clearing away what a kill has left of one; see `sharding.writing`."""
+    for stray in (path / "views").rglob("*.partial"):
         stray.unlink()
-    with writing(folder) as writer:
+    with writing(path / "views") as writer:
         yield writer
 
 

@@ -186,6 +186,16 @@ def test_second_episode_differs_and_starts_afresh() -> None:
     np.testing.assert_array_equal(starts[1], again)
 
 
+def test_episode_does_not_depend_on_those_before() -> None:
+    nose, old = (
+        Nose(fluctuation=0.3, correlation_time=0.3),
+        make(nose=Nose(fluctuation=0.3, correlation_time=0.3)),
+    )
+    list(episode(old, 1, 33))
+    for one, other in zip(episode(old, 7), episode(make(nose=nose), 7), strict=True):
+        same(one, other)
+
+
 def test_starts_fill_free_space() -> None:
     env = make("pillar", body=Body(radius=0.3))
     poses = np.array([env.reset(seed=seed)[1]["pose"] for seed in range(60)])
@@ -262,6 +272,17 @@ def test_frame_shows_the_view_beside_the_room() -> None:
     scale = 240 / 5.2
     np.testing.assert_allclose(np.subtract(*body[::-1]) / scale, (0, 0.65 * 0.04 * 20), atol=0.03)
     assert env.metadata["render_fps"] == 25
+
+
+def test_way_of_the_last_episode_is_not_shown() -> None:
+    env = make(render_mode="rgb_array")
+    frames = []
+    for _ in range(2):
+        env.reset(seed=0, options={"pose": (0.5, 0.5, 0)})
+        frames.append(env.render())
+        for _ in range(20):
+            env.step(FORWARD)
+    np.testing.assert_array_equal(*frames)
 
 
 def test_wide_views_are_shown_whole() -> None:

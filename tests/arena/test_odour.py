@@ -116,7 +116,8 @@ def plain(odours: OdourField, xy: np.ndarray, order: tuple[int, int]) -> np.ndar
 @pytest.mark.parametrize("count", [1, 400])
 @pytest.mark.parametrize("walls", [(), [[(0.3, -2.5), (0.3, 2.5)]]])
 def test_kernel_agrees_with_a_plain_convolution(walls: object, count: int) -> None:
-    odours = field(walls, sources=[(-1.5, -1.0), (1.6, 0.9)])
+    odours = field(walls, sources=[(-1.5, -1.0), (1.6, 0.9)], cell=0.07)
+    assert odours._step[0] != odours._step[1]
     points = np.random.default_rng(0).uniform(ROOM[:2], ROOM[2:], (count, 2))
     points = np.vstack([points, [ROOM[:2], ROOM[2:], (-3.0, 2.5), (0.0, -2.5)]])[-count:]
     logarithm, by_x, by_y = (plain(odours, points, order) for order in ((0, 0), (1, 0), (0, 1)))

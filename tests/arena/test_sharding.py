@@ -1,3 +1,5 @@
+import errno
+import os
 import threading
 from pathlib import Path
 
@@ -22,7 +24,7 @@ def written(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def by_zarr(folder: Path) -> None:
+def by_zarr(folder: Path, images: np.ndarray = IMAGES) -> None:
     array = zarr.create_array(
         folder,
         shape=IMAGES.shape,
@@ -31,7 +33,7 @@ def by_zarr(folder: Path) -> None:
         shards=(SHARD, *IMAGES.shape[1:]),
         compressors=codec(),
     )
-    array[:] = IMAGES
+    array[:] = images
 
 
 @pytest.mark.parametrize("count", [0, 1, 255, 256, 257, 1000])
@@ -58,6 +60,12 @@ def test_what_is_written_is_whole(written: Path) -> None:
     assert not is_whole(file(written, SECOND), 45)
     assert not is_whole(written, 1)
     assert not is_whole(written / "nothing", 1)
+
+
+def test_shard_that_lacks_an_image_is_not_whole(tmp_path: Path) -> None:
+    by_zarr(tmp_path, np.concatenate([IMAGES[:100], 0 * IMAGES[:1], IMAGES[101:]]))
+    assert not is_whole(file(tmp_path, FIRST), SHARD)
+    assert is_whole(file(tmp_path, SECOND), 44)
 
 
 @given(data=st.data())
@@ -119,3 +127,13 @@ def test_what_cannot_be_written_leaves_nothing_and_is_told(tmp_path: Path, more:
             writer[rows] = IMAGES[rows]
     assert is_whole(file(tmp_path, FIRST), SHARD)
     assert not list(tmp_path.rglob("*.partial"))
+
+
+def test_what_fails_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_: bytes) -> bytes:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(sharding, "_checksum", full)
+    with pytest.raises(OSError, match="No space left"), writing(tmp_path) as writer:
+        writer[FIRST] = IMAGES[FIRST]
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]

@@ -47,12 +47,12 @@ def test_what_is_missing_is_known_and_can_be_written(tmp_path: Path) -> None:
     images = np.random.default_rng(0).integers(0, 256, (600, 2, 3, 3), dtype=np.uint8)
     first, second, third = shards(600)
     assert storage.load(tmp_path / "x").missing == [first, second, third]
-    with storage.writable_views(tmp_path / "x", [second]) as views:
+    with storage.writable_views(tmp_path / "x") as views:
         views[second] = images[second]
     stored = storage.load(tmp_path / "x")
     assert stored.missing == [first, third]
     assert stored.attributes == {"seed": 1, "version": 2}
-    with storage.writable_views(tmp_path / "x", stored.missing) as views:
+    with storage.writable_views(tmp_path / "x") as views:
         for rows in stored.missing:
             views[rows] = images[rows]
     stored = storage.load(tmp_path / "x")
@@ -64,7 +64,7 @@ def test_what_is_missing_is_known_and_can_be_written(tmp_path: Path) -> None:
 def test_reading_by_index(tmp_path: Path, chosen: list[int]) -> None:
     laid_out(tmp_path / "x", 600)
     images = np.random.default_rng(0).integers(0, 256, (600, 2, 3, 3), dtype=np.uint8)
-    with storage.writable_views(tmp_path / "x", []) as views:
+    with storage.writable_views(tmp_path / "x") as views:
         for rows in shards(600):
             views[rows] = images[rows]
     index = np.array(chosen, dtype=int)
