@@ -162,8 +162,9 @@ def _explore(
     path: Path | None = None,
     fit: bool | None = None,
     views: int | None = None,
-    width: int = 360,
-    height: int = 60,
+    camera: Literal["panoramic", "perspective"] = "panoramic",
+    width: int | None = None,
+    height: int | None = None,
     noise: float = 0.1,
     seed: Seed = 0,
     as_json: Json = False,
@@ -171,7 +172,7 @@ def _explore(
     """Walk through a room and record what is seen and smelt; a killed exploration goes on when called again.
 
     Examples: `cogmap explore furnished --out walk.zarr`; `cogmap explore pillar --views 5000 --out p.zarr`;
-    `cogmap explore furnished --motion rotation --out spin.zarr`;
+    `cogmap explore furnished --motion rotation --camera perspective --out spin.zarr`;
     `cogmap explore open_field --motion replay --path rat.csv --fit --out rat.zarr`.
 
     Parameters
@@ -191,16 +192,19 @@ def _explore(
         Whether `replay` scales and moves the path to fit the room.
     views
         How many to take; what the motion does by default, such as 17,000 brownian ones, or all of a path.
+    camera
+        What it looks through: all around, or 90° ahead.
     width, height
-        Of the panoramic views, pixels.
+        Of the views, pixels; 360×60 all around and 320×240 ahead by default.
     noise
         Standard deviation of the log of the smelt concentration.
     """
-    told = {"odorant": odorant, "path": path, "fit": fit}
+    way = {"odorant": odorant, "path": path, "fit": fit}
+    size = {"width": width, "height": height}
     recording = explore(
         Arena.load(arena),
-        MOTIONS[motion](**{name: value for name, value in told.items() if value is not None}),
-        Camera.panoramic(width, height),
+        MOTIONS[motion](**{name: value for name, value in way.items() if value is not None}),
+        getattr(Camera, camera)(**{name: value for name, value in size.items() if value is not None}),
         nose=Nose(noise=noise),
         views=views,
         seed=seed,
