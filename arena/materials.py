@@ -6,7 +6,7 @@ metre: an animal with blurred eyes needs the coarse ones, a feature detector the
 """
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -19,6 +19,9 @@ TILE = (1024, 128)
 """Texels along the wall and up the wall before the texture repeats."""
 LEVELS = (11, 8)
 """Resolutions along the wall and up the wall, each half the one before."""
+
+ROOMS = 4
+"""Rooms whose materials are kept together, some 20 MB each."""
 
 Texture = UInt8[np.ndarray, "along up 3"]
 _Tint = tuple[int, int, int]
@@ -204,19 +207,26 @@ def texture(name: str) -> Texture:
     return tile
 
 
-@cache
+@lru_cache(maxsize=ROOMS)
 def weave(names: tuple[str, ...]) -> Weave:
     """Average the named materials for the ray caster."""
-    tiles = np.zeros((len(names), *TILE, 4))
-    tiles[..., :3] = [texture(name) for name in names]
-    blocks, place, total = [], np.empty(LEVELS, dtype=np.int64), 0
-    for i, j in np.ndindex(LEVELS):
-        shape = TILE[0] >> i, 1 << i, TILE[1] >> j, 1 << j
-        coarse = tiles.reshape(len(names), *shape, 4).mean(axis=(2, 4))
-        blocks.append(np.rint(coarse).astype(np.uint8).reshape(len(names), -1))
-        place[i, j] = total
-        total += blocks[-1].shape[1]
-    return Weave(np.concatenate(blocks, axis=1), place)
+    woven = [_weave(name) for name in names]
+    return Weave(np.stack([texels for texels, _ in woven]), woven[0][1])
+
+
+@cache
+def _weave(name: str) -> tuple[UInt8[np.ndarray, "bytes"], Int[np.ndarray, "levels_along levels_up"]]:
+    along = np.zeros((*TILE, 4))
+    along[..., :3] = texture(name)
+    blocks, sizes = [], np.empty(LEVELS, dtype=np.int64)
+    for i in range(LEVELS[0]):
+        coarse = along
+        for j in range(LEVELS[1]):
+            blocks.append(np.rint(coarse).astype(np.uint8).ravel())
+            sizes[i, j] = blocks[-1].size
+            coarse = 0.5 * (coarse[:, ::2] + coarse[:, 1::2])
+        along = 0.5 * (along[::2] + along[1::2])
+    return np.concatenate(blocks), (sizes.cumsum() - sizes.ravel()).reshape(LEVELS)
 
 
 @cache

@@ -1,13 +1,13 @@
 """A room as the eye's kernels want it: tables of numbers."""
 
-from functools import cache
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Int, Shaped, UInt8
 
 from arena.light import Light
-from arena.materials import tint, weave
+from arena.materials import ROOMS, tint, weave
 from arena.raycast import FACE
 from arena.surfaces import Surfaces
 from arena.texturing import BLOCK, Ground
@@ -26,7 +26,7 @@ class Scene(NamedTuple):
     place: Int[np.ndarray, "levels_along levels_up"]
 
 
-@cache
+@lru_cache(maxsize=ROOMS)
 def _texels(names: tuple[str, ...]) -> UInt8[np.ndarray, " bytes"]:
     return np.pad(weave(names).texels.ravel(), (0, BLOCK))
 

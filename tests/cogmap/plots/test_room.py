@@ -103,7 +103,7 @@ def test_the_light_is_an_arrow_from_the_lamp() -> None:
     (arrow,) = [text for text in axes.texts if text.arrow_patch is not None]
     tail = np.array(arrow.get_position())
     assert np.rad2deg(np.arctan2(tail[1], tail[0])) == pytest.approx(arena.light.azimuth_deg)
-    assert any("light from 65°,\n40° up,\nstrength 0.5" in text.get_text() for text in axes.texts)
+    assert any("light from 65°,\n40° up,\nstrength 0.35" in text.get_text() for text in axes.texts)
 
 
 def test_a_textured_floor_is_in_the_legend() -> None:
