@@ -28,7 +28,7 @@ class Drive:
     disc that overlaps a wall is pushed out along the shortest way, so it slides without friction; where that
     fails, in a wedge or in a gap too narrow for it, it stays where it was. Steps are divided so that none is
     longer than a fifth of the radius: no wall is thin enough to be passed, nor any gap that is narrower than
-    the body by more than 1 % and `TOLERANCE`.
+    the body by 1 %.
 
     Attributes
     ----------
@@ -131,9 +131,7 @@ class Drive:
             px, py = wall.point
             stretch = self.body.radius / max(wall.distance, _CLOSE * self.body.radius)
             x, y = px + stretch * (x - px), py + stretch * (y - py)
-        # Pushes shorten a way along walls; one that they lengthen was squeezed through a gap.
-        squeezed = math.hypot(x - x0 + dx, y - y0 + dy) > 1.01 * math.hypot(dx, dy) + TOLERANCE
-        if wall is not None or squeezed:
+        else:
             x, y = x0 - dx, y0 - dy
         if (x, y) != (x0, y0):
             self._disc.position = x, y

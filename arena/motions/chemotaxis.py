@@ -16,19 +16,19 @@ from arena.odour import OdourField
 from arena.settings import Settings
 
 ENOUGH = 0.5
-"""Less than this share of the strongest smell met is no maximum."""
+"""Where it smells less than this share of the strongest stay was no stay at the maximum."""
 
 
 class Chemotaxis(Settings):
     """Climbs one odour to its maximum, spins there, is pushed away in a random direction, and climbs again.
 
     A climb goes by strides along the gradient, quartered whenever one no longer smells stronger, and sliding
-    along walls. Pushed against a wall the body bounces off. Stuck where it smells much less than at the
-    strongest maximum so far it is pushed at once.
+    along walls. Pushed against a wall the body bounces off. Where the source is out of reach, or is smelt
+    through a gap that is too narrow for the body, a climb ends at the nearest place that smells strongest.
 
     The views at the maximum form a ring. Which they are stands in the notes of the walk: `at_maximum` holds
-    the first view of each stay and the one after its last, without those at a much weaker maximum, found
-    before the stronger one.
+    the first view of each stay and the one after its last, without the stays where it smells less than half
+    as strong as at the strongest.
 
     Parameters
     ----------
@@ -96,13 +96,10 @@ class Chemotaxis(Settings):
     ) -> Iterator[tuple[float | None, Iterator[Way]]]:
         """Give the legs of the way, one by one, and how strong it smells where one is a stay at a maximum."""
         pace, speed = min(self.pace, body.max_turn), min(self.speed, body.max_speed)
-        strongest = 0.0
         while True:
             yield None, self._climb(drive, odours, pace, speed)
             strength, _ = self._smell(drive, odours)
-            if strength > ENOUGH * strongest:
-                strongest = max(strength, strongest)
-                yield strength, turn_by(drive, rng.choice([-1, 1]) * (2 * math.pi + self.angle), pace)
+            yield strength, turn_by(drive, rng.choice([-1, 1]) * (2 * math.pi + self.angle), pace)
             yield None, self._go_away(drive, pace, speed, rng)
 
     def _climb(self, drive: Drive, odours: OdourField, pace: float, speed: float) -> Iterator[Way]:

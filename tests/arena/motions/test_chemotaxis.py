@@ -80,12 +80,16 @@ def test_it_is_pushed_in_all_directions() -> None:
     legs = [walk.poses[end : begin + 1, :2] for (_, end), (begin, _) in pairwise(stays)]
     far = np.array([leg[np.hypot(*leg.T).argmax()] for leg in legs])
     assert np.histogram(np.arctan2(far[:, 1], far[:, 0]), bins=6, range=(-np.pi, np.pi))[0].min() > 3
+    # From where it came does not matter.
+    arrival = np.array([walk.poses[begin, 2] for begin, _ in stays[:-1]])
+    turned = np.arctan2(far[:, 1], far[:, 0]) - arrival
+    assert np.abs(np.exp(1j * turned).mean()) < 0.35
     reach = np.hypot(*far.T)
     assert 0.1 < reach.min() < 0.3
     assert 0.5 < reach.max() < 0.65
 
 
-def test_stuck_at_less_than_the_strongest_smell_it_does_not_stay() -> None:
+def test_dead_ends_do_not_count_as_maxima() -> None:
     # The odour of a source at the end of one arm is strongest, in the other arm, just across the notch.
     fields = Arena.load("open_field").model_dump()
     horseshoe = [

@@ -40,6 +40,20 @@ def test_views_follow_each_other_at_the_angle() -> None:
     assert moved.max() < 0.12 + 0.65 * 0.05
 
 
+def test_it_goes_to_and_fro() -> None:
+    found = poses(Cyclic())
+    turned = np.abs(np.angle(np.exp(1j * np.diff(found[:, 2]))))
+    straight = np.split(turned, np.flatnonzero(turned > 0.01))
+    assert max(map(len, straight)) < 5
+
+
+def test_a_slow_body_keeps_to_the_range_too() -> None:
+    slow = Body(max_acceleration=1.0, max_turn_acceleration=2.0)
+    x, y, _ = Cyclic().walk(Arena.load("open_field"), slow, 4000, np.random.default_rng(0)).poses.T
+    assert np.abs(y).max() < 0.07
+    assert np.ptp(x) > 3.3
+
+
 def test_the_way_may_be_told() -> None:
     ends = ((-0.5, -1.0), (0.5, 1.0))
     x, y, _ = poses(Cyclic(ends=ends, width=0.0), 800).T

@@ -84,15 +84,19 @@ def test_without_headings_it_looks_where_it_goes(save) -> None:
     assert np.abs(off).max() < 0.05
 
 
-def test_standing_still_it_turns_from_one_move_to_the_next(save) -> None:
+@pytest.mark.parametrize(("first", "then"), [(0.0, 1.5), (1.0, -1.0), (2.5, -2.5)])
+def test_standing_still_it_turns_the_short_way_from_one_move_to_the_next(
+    save, first: float, then: float
+) -> None:
     t = np.arange(0, 12, 0.02)
-    x, y = np.clip(t, 0, 4) / 4, np.clip(t - 8, 0, 4) / 4
-    heading = replay(Replay(path=save(t=t, x=x, y=y))).poses[:, 2]
-    np.testing.assert_allclose(heading[t < 3.8], 0, atol=1e-9)
-    np.testing.assert_allclose(heading[t > 8.2], np.pi / 2, atol=1e-9)
-    still = heading[(t > 4.2) & (t < 7.8)]
-    np.testing.assert_allclose(np.diff(still), np.diff(still).mean(), atol=1e-9)
-    assert (np.diff(still) > 0).all()
+    way = np.clip(t, 0, 4) / 4 * np.exp(1j * first) + np.clip(t - 8, 0, 4) / 4 * np.exp(1j * then)
+    heading = replay(Replay(path=save(t=t, x=way.real, y=way.imag), fit=True)).poses[:, 2]
+    np.testing.assert_allclose(heading[t < 3.8], first, atol=1e-9)
+    np.testing.assert_allclose(heading[t > 8.2], then, atol=1e-9)
+    still = np.unwrap(heading[(t > 3.8) & (t < 8.2)])
+    assert np.ptp(still) == pytest.approx(abs(np.angle(np.exp(1j * (then - first)))))
+    step = np.diff(still)[25:-25]
+    np.testing.assert_allclose(step, step.mean(), atol=1e-9)
 
 
 def test_headings_turn_the_short_way_over_a_gap(save) -> None:
