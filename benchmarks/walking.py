@@ -1,11 +1,10 @@
 """What a view costs before it is looked at: walk and smell by motion, and the body's step beside pymunk's."""
 
-import time
-from collections.abc import Callable
-
 import numpy as np
+import pymunk
 
 from arena import Arena, Body, Brownian, Chemotaxis, Cyclic, Motion, Nose, Rotation, Track
+from benchmarks.timing import seconds
 
 MOTIONS: tuple[Motion, ...] = (Rotation(), Cyclic(), Brownian(), Chemotaxis(), Track())
 VIEWS = 3000
@@ -31,13 +30,14 @@ def walked(room: Arena, motion: Motion) -> float:
         walk = motion.walk(room, Body(), VIEWS, rng)
         Nose().smell(room.odours.concentration(walk.poses[:, :2]), walk.times, rng)
 
-    return VIEWS / shortest(work)
+    return VIEWS / seconds(work, ROUNDS)
 
 
 def stepped(room: Arena) -> dict[str, float]:
     """Step round a circle in open space, along a wall, and pymunk's own step of the same space, in turn."""
     open_space, wall = Body().place(room, (0.0, 0.0, 0.0)), Body().place(room, (-1.82, -1.32, 0.0))
-    space = room.space()
+    space, disc = room.space(), pymunk.Body(mass=1.0, moment=float("inf"))
+    space.add(disc, pymunk.Circle(disc, Body().radius))
 
     def circle() -> None:
         for _ in range(STEPS):
@@ -47,22 +47,12 @@ def stepped(room: Arena) -> dict[str, float]:
         for _ in range(STEPS):
             wall.step(0.001, 0.0, 0.05)
 
-    def pymunk() -> None:
+    def alone() -> None:
         for _ in range(STEPS):
             space.step(0.05)
 
     wall.step(0.01, -0.5, 0.5)
     return {
-        f"{name}_us": 1e6 * shortest(work) / STEPS
-        for name, work in (("open_space", circle), ("along_a_wall", slide), ("pymunk", pymunk))
+        f"{name}_us": 1e6 * seconds(work, ROUNDS) / STEPS
+        for name, work in (("open_space", circle), ("along_a_wall", slide), ("pymunk", alone))
     }
-
-
-def shortest(work: Callable[[], None]) -> float:
-    """Shortest time of a few rounds, s."""
-    times = []
-    for _ in range(ROUNDS):
-        started = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - started)
-    return min(times)

@@ -17,9 +17,10 @@ def climb(motion: Chemotaxis, views: int, arena: Arena, body: Body | None = None
 
 
 def peak(arena: Arena, odorant: int) -> np.ndarray:
-    """Where the odour is strongest, by looking everywhere near its source."""
+    """Where the odour is strongest, by looking everywhere near its source where the body can be."""
     source = np.array(arena.sources[odorant].position)
-    grid = source + np.stack(np.meshgrid(*2 * [np.linspace(-0.1, 0.1, 101)]), axis=-1).reshape(-1, 2)
+    grid = source + np.stack(np.meshgrid(*2 * [np.linspace(-0.2, 0.2, 201)]), axis=-1).reshape(-1, 2)
+    grid = grid[arena.is_free(grid, Body().radius)]
     return grid[arena.odours.concentration(grid)[:, odorant].argmax()]
 
 
