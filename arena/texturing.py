@@ -48,13 +48,20 @@ def fade_in(stretch: float) -> float:
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
 def _blend(
-    texels: np.ndarray, starts: tuple, weight: tuple, strip: np.ndarray, at: int, count: int, layer: int
+    texels: np.ndarray,
+    starts: tuple,
+    skip: int,
+    weight: tuple,
+    strip: np.ndarray,
+    at: int,
+    count: int,
+    layer: int,
 ) -> None:
     """Fill part of `strip` with a weighted sum of three stretches of texels; a second layer is added.
 
     Unsigned indices allow SIMD. Where the third has no weight it is not read.
     """
-    a, b, c = np.uint64(starts[0]), np.uint64(starts[1]), np.uint64(starts[2])
+    a, b, c = np.uint64(starts[0] + skip), np.uint64(starts[1] + skip), np.uint64(starts[2] + skip)
     wa, wb, wc = weight
     to, length = np.uint64(at), whole(count)
     if layer > 0:
@@ -83,6 +90,23 @@ def _blend(
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
+def _lie(middle: float, half: float, share: float, start: int, across: int, length: int) -> tuple:
+    """Where the three columns of texels under a stretch start, and their weights."""
+    low, high = middle - half, middle + half
+    i = int(np.floor(low))
+    share /= high - low
+    second, third = min(high - i - 1.0, 1.0), max(0.0, high - i - 2.0)
+    a, b = start + length * (i & across - 1), start + length * (i + 1 & across - 1)
+    c = start + length * (i + 2 & across - 1)
+    return (a, b, c), (
+        np.float32(share * (i + 1.0 - low)),
+        np.float32(share * second),
+        np.float32(share * third),
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
 def unroll(
     stretch: tuple,
     up: tuple,
@@ -102,29 +126,22 @@ def unroll(
     while u1 - u0 > 2.0 and fine < LEVELS[0] - 2:
         u0, u1, fine = 0.5 * u0, 0.5 * u1, fine + 1
     fade, length = fade_in(u1 - u0), 4 * (TILE[1] >> level)
-    for one in range(2 if fade > 0.0 else 1):
-        share, tile = gain * (fade if one == 1 else 1.0 - fade), TILE[0] >> fine + one
-        middle, half = (
-            0.5 * (u0 + u1),
-            min(max(0.5 * (u1 - u0), 0.5), 1.0),
-        )  # over one texel: linear interpolation
-        if one == 1:
-            middle, half = 0.5 * middle, max(0.5 * half, 0.5)
-        low, high = middle - half, middle + half
-        i = int(np.floor(low))
-        share /= high - low
-        second, third = min(high - i - 1.0, 1.0), max(0.0, high - i - 2.0)
-        weight = np.float32(share * (i + 1.0 - low)), np.float32(share * second), np.float32(share * third)
-        base = start + place[fine + one, level]
-        a, b = base + length * (i & tile - 1), base + length * (i + 1 & tile - 1)
-        c = base + length * (i + 2 & tile - 1)
-        v, at = up[0], 0
-        while v < up[1]:
-            skip = 4 * v & length - 1
-            n = min(4 * (up[1] - v), length - skip)
-            _blend(texels, (a + skip, b + skip, c + skip), weight, strip, at, n, one)
-            at += n
-            v += n // 4
+    # Over less than one texel: linear interpolation.
+    middle, half = 0.5 * (u0 + u1), min(max(0.5 * (u1 - u0), 0.5), 1.0)
+    fine_start, coarse_start = start + place[fine, level], start + place[fine + 1, level]
+    starts, weight = _lie(middle, half, gain * (1.0 - fade), fine_start, TILE[0] >> fine, length)
+    more, faint = _lie(
+        0.5 * middle, max(0.5 * half, 0.5), gain * fade, coarse_start, TILE[0] >> fine + 1, length
+    )
+    v, at = up[0], 0
+    while v < up[1]:
+        skip = 4 * v & length - 1
+        n = min(4 * (up[1] - v), length - skip)
+        _blend(texels, starts, skip, weight, strip, at, n, 0)
+        if fade > 0.0:  # before the next stretch, which overwrites what either layer leaves beyond this one
+            _blend(texels, more, skip, faint, strip, at, n, 1)
+        at += n
+        v += n // 4
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
