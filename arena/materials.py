@@ -205,18 +205,25 @@ def texture(name: str) -> Texture:
 
 
 @cache
+def _averages(name: str) -> UInt8[np.ndarray, " bytes"]:
+    """Average a tile at every pair of resolutions, end to end; sums of bytes are exact in double precision."""
+    long = np.zeros((*TILE, 4))
+    long[..., :3] = texture(name)
+    blocks = []
+    for _ in range(LEVELS[0]):
+        coarse = long
+        for _ in range(LEVELS[1]):
+            blocks.append(np.rint(coarse).astype(np.uint8).ravel())
+            coarse = 0.5 * (coarse[:, ::2] + coarse[:, 1::2])
+        long = 0.5 * (long[::2] + long[1::2])
+    return np.concatenate(blocks)
+
+
 def weave(names: tuple[str, ...]) -> Weave:
     """Average the named materials for the ray caster."""
-    tiles = np.zeros((len(names), *TILE, 4))
-    tiles[..., :3] = [texture(name) for name in names]
-    blocks, place, total = [], np.empty(LEVELS, dtype=np.int64), 0
-    for i, j in np.ndindex(LEVELS):
-        shape = TILE[0] >> i, 1 << i, TILE[1] >> j, 1 << j
-        coarse = tiles.reshape(len(names), *shape, 4).mean(axis=(2, 4))
-        blocks.append(np.rint(coarse).astype(np.uint8).reshape(len(names), -1))
-        place[i, j] = total
-        total += blocks[-1].shape[1]
-    return Weave(np.concatenate(blocks, axis=1), place)
+    sizes = [4 * (TILE[0] >> i) * (TILE[1] >> j) for i, j in np.ndindex(LEVELS)]
+    place = np.cumsum([0, *sizes[:-1]]).reshape(LEVELS)
+    return Weave(np.stack([_averages(name) for name in names]), place)
 
 
 @cache

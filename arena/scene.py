@@ -1,6 +1,6 @@
 """A room as the eye's kernels want it: tables of numbers."""
 
-from functools import cache
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +26,7 @@ class Scene(NamedTuple):
     place: Int[np.ndarray, "levels_along levels_up"]
 
 
-@cache
+@lru_cache(maxsize=8)
 def _texels(names: tuple[str, ...]) -> UInt8[np.ndarray, " bytes"]:
     return np.pad(weave(names).texels.ravel(), (0, BLOCK))
 
@@ -47,9 +47,10 @@ def scene(surfaces: Surfaces, floor: str | tuple[int, int, int], light: Light | 
     right /= np.linalg.norm(right, axis=1, keepdims=True)
     faces["left_light"], faces["right_light"] = _brightness(light, -right), _brightness(light, right)
     above = float(_brightness(light, _UP)[0])
-    faces["red"], faces["green"], faces["blue"] = (
-        above * np.stack([tint(name) for name in names])[surfaces.material].T
-    )
+    lids = np.stack([tint(name) for name in names])[surfaces.material]
+    for solid in range(surfaces.solid.max() + 1):
+        lids[surfaces.solid == solid] = lids[surfaces.solid == solid].mean(axis=0)
+    faces["red"], faces["green"], faces["blue"] = above * lids.T
     if isinstance(floor, str):
         red, green, blue = (above * tint(floor)).tolist()
         start = int(begins[names.index(floor)])

@@ -65,6 +65,24 @@ def _blend(
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
+def _lie(middle: float, half: float, share: float, base: int, across: int, length: int) -> tuple:
+    """Where the three columns of texels under a stretch start, and their weights."""
+    low, high = middle - half, middle + half
+    i = int(np.floor(low))
+    share /= high - low
+    second, third = min(high - i - 1.0, 1.0), max(0.0, high - i - 2.0)
+    return (
+        base + length * (i & across - 1),
+        base + length * (i + 1 & across - 1),
+        base + length * (i + 2 & across - 1),
+        np.float32(share * (i + 1.0 - low)),
+        np.float32(share * second),
+        np.float32(share * third),
+    )
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
 def unroll(
     along: tuple,
     up: tuple,
@@ -84,29 +102,21 @@ def unroll(
     while u1 - u0 > 2.0 and fine < LEVELS[0] - 2:
         u0, u1, fine = 0.5 * u0, 0.5 * u1, fine + 1
     fade, length = fade_in(u1 - u0), 4 * (TILE[1] >> level)
-    for one in range(2 if fade > 0.0 else 1):
-        share, tile = gain * (fade if one == 1 else 1.0 - fade), TILE[0] >> fine + one
-        middle, half = (
-            0.5 * (u0 + u1),
-            min(max(0.5 * (u1 - u0), 0.5), 1.0),
-        )  # over one texel: linear interpolation
-        if one == 1:
-            middle, half = 0.5 * middle, max(0.5 * half, 0.5)
-        low, high = middle - half, middle + half
-        i = int(np.floor(low))
-        share /= high - low
-        second, third = min(high - i - 1.0, 1.0), max(0.0, high - i - 2.0)
-        weight = np.float32(share * (i + 1.0 - low)), np.float32(share * second), np.float32(share * third)
-        base = start + place[fine + one, level]
-        a, b = base + length * (i & tile - 1), base + length * (i + 1 & tile - 1)
-        c = base + length * (i + 2 & tile - 1)
-        v, at = up[0], 0
-        while v < up[1]:
-            skip = 4 * v & length - 1
-            n = min(4 * (up[1] - v), length - skip)
-            _blend(texels, (a + skip, b + skip, c + skip), weight, strip, at, n, one)
-            at += n
-            v += n // 4
+    # Over less than one texel: linear interpolation.
+    middle, half = 0.5 * (u0 + u1), min(max(0.5 * (u1 - u0), 0.5), 1.0)
+    base, across = start + place[fine, level], TILE[0] >> fine
+    a, b, c, wa, wb, wc = _lie(middle, half, gain * (1.0 - fade), base, across, length)
+    base, across, half = start + place[fine + 1, level], across >> 1, max(0.5 * half, 0.5)
+    d, e, f, wd, we, wf = _lie(0.5 * middle, half, gain * fade, base, across, length)
+    v, at = up[0], 0
+    while v < up[1]:
+        skip = 4 * v & length - 1
+        n = min(4 * (up[1] - v), length - skip)
+        _blend(texels, (a + skip, b + skip, c + skip), (wa, wb, wc), strip, at, n, 0)
+        if fade > 0.0:  # now: what either layer leaves beyond n is overwritten by the next stretch
+            _blend(texels, (d + skip, e + skip, f + skip), (wd, we, wf), strip, at, n, 1)
+        at += n
+        v += n // 4
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
