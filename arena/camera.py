@@ -125,23 +125,24 @@ class Camera(Settings):
         Parameters
         ----------
         out
-            Buffer to paint into, C-contiguous; it is also returned.
+            Buffer to paint into, C-contiguous and writeable; it is also returned.
         rng
             Where the sensor noise comes from; needed only if the camera has `noise`.
 
         Raises
         ------
         ArenaError
-            For poses that are not finite, a buffer that does not fit, or noise without a generator.
+            For poses that are not finite triples, a buffer that does not fit, or noise without a generator.
         """
         poses = _checked(poses)
         shape = (len(poses), self.height, self.width, 3)
         if out is None:
             out = np.empty(shape, np.uint8)
-        elif out.shape != shape or not out.flags.c_contiguous:
+        elif out.dtype != np.uint8 or out.shape != shape or not out.flags.carray:
+            layout = "" if out.flags.carray else ", strided or read-only"
             raise ArenaError(
-                f"the buffer is {out.dtype} of shape {out.shape}; "
-                f"these views need C-contiguous uint8 of {shape}"
+                f"the buffer is {out.dtype} of shape {out.shape}{layout}; "
+                f"these views need C-contiguous, writeable uint8 of {shape}"
             )
         if self.noise and rng is None:
             raise ArenaError(f"the camera has noise {self.noise:g}; give `rng`, a numpy.random.Generator")
@@ -164,10 +165,11 @@ class Camera(Settings):
         Raises
         ------
         ArenaError
-            For poses that are not finite.
+            For poses that are not finite triples.
         """
+        poses = _checked(poses)
         out = np.empty((len(poses), self.width))
-        raycast.measure(_checked(poses), arena.scene.faces, self._optics[0], out)
+        raycast.measure(poses, arena.scene.faces, self._optics[0], out)
         return out
 
     def identify(self, arena: Arena, poses: Poses) -> Int32[np.ndarray, "views height width"]:
@@ -182,10 +184,11 @@ class Camera(Settings):
         Raises
         ------
         ArenaError
-            For poses that are not finite.
+            For poses that are not finite triples.
         """
+        poses = _checked(poses)
         out = np.empty((len(poses), self.height, self.width), np.int32)
-        raycast.identify(_checked(poses), arena.scene.faces, self._optics[0], out)
+        raycast.identify(poses, arena.scene.faces, self._optics[0], out)
         return out
 
     @cached_property
@@ -196,7 +199,7 @@ class Camera(Settings):
         return lens, np.array([raycast.direction(x, lens) for x in np.arange(self.width + 1.0)])
 
 
-def _words(images: Images) -> UInt32[np.ndarray, "views height words"]:
+def _words(images: Images) -> UInt32[np.ndarray, "views rows words"]:
     """View the same memory as words of four bytes; no rows where an image's row is not of whole words."""
     views, height, width, _ = images.shape
     if width % 4:
@@ -205,7 +208,10 @@ def _words(images: Images) -> UInt32[np.ndarray, "views height words"]:
 
 
 def _checked(poses: Poses) -> Float[np.ndarray, "views 3"]:
+    if np.ndim(poses) != 2 or np.shape(poses)[1] != 3:
+        raise ArenaError(f"the poses are of shape {np.shape(poses)}; give x, y (m) and heading (rad) a row")
     if not np.isfinite(poses).all():
         bad = int(np.flatnonzero(~np.isfinite(poses).all(axis=1))[0])
         raise ArenaError(f"pose {bad} is {poses[bad]}; give finite x, y (m) and heading (rad)")
-    return np.ascontiguousarray(poses, dtype=np.float64)
+    # Of this layout only: the kernels would be compiled again for read-only poses.
+    return np.require(poses, np.float64, ["C", "A", "W"])
