@@ -3,10 +3,8 @@ import sys
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from arena.materials import MATERIALS, TEXEL, TILE, texture, weave
+from arena.materials import LEVELS, MATERIALS, TEXEL, TILE, texture, tint, weave
 
 PLAIN = {"white", "blue"}
 NAMES = tuple(sorted(MATERIALS))
@@ -56,40 +54,30 @@ def test_hardly_a_texel_is_clipped(name: str) -> None:
     assert np.isin(texture(name), (0, 255)).mean() < 0.03
 
 
-@given(
-    material=st.integers(0, len(NAMES) - 1),
-    u=st.tuples(st.integers(0, 3000), st.integers(1, 2500)),
-    v=st.tuples(st.integers(0, 127), st.integers(1, 128)),
-)
-@settings(max_examples=100, deadline=None)
-def test_running_sums_give_the_mean_of_any_stretch_even_across_the_seam(
-    material: int, u: tuple[int, int], v: tuple[int, int]
-) -> None:
-    (u0, along), (v0, up) = u, v
-    v1 = min(v0 + up, TILE[1])
-    sums, mean, _ = weave(NAMES)
-    sums, mean = sums[material].reshape(TILE[0] + 1, -1, 3), mean[material].reshape(-1, 3)
-
-    def below(row: int) -> np.ndarray:
-        return mean[row] + (sums[(u0 + along) % TILE[0], row] - sums[u0 % TILE[0], row]) / along
-
-    columns = np.arange(u0, u0 + along) % TILE[0]
-    wanted = texture(NAMES[material])[columns, v0:v1].mean(axis=(0, 1))
-    np.testing.assert_allclose((below(v1) - below(v0)) / (v1 - v0), wanted, atol=0.1)
+@pytest.mark.parametrize("level", [(0, 0), (3, 0), (0, 5), (4, 2), (10, 7)])
+def test_texels_of_a_level_are_means_of_the_tile(level: tuple[int, int]) -> None:
+    texels, place = weave(NAMES)
+    (i, j), (long, high) = level, (TILE[0] >> level[0], TILE[1] >> level[1])
+    start = place[level]
+    for material, name in enumerate(NAMES):
+        found = texels[material, start : start + 4 * long * high].reshape(long, high, 4)
+        wanted = texture(name).reshape(long, 1 << i, high, 1 << j, 3).mean(axis=(1, 3))
+        np.testing.assert_allclose(found[..., :3], wanted, atol=0.51)
+        assert (found[..., 3] == 0).all()
 
 
-def test_running_sums_close_upon_themselves() -> None:
-    sums, mean, lid = weave(NAMES)
-    assert sums.shape == (len(NAMES), 1025, 129 * 3)
-    assert mean.shape == (len(NAMES), 129 * 3)
-    np.testing.assert_allclose(sums[:, -1], 0, atol=0.5)
-    assert (sums[:, 0] == 0).all()
-    tiles = np.stack([texture(name) for name in NAMES])
-    np.testing.assert_allclose(mean[:, -3:], 128 * tiles.mean(axis=(1, 2)), rtol=1e-6)
-    np.testing.assert_allclose(lid, 0.8 * tiles.mean(axis=(1, 2)), rtol=1e-6)
+def test_levels_lie_end_to_end() -> None:
+    texels, place = weave(NAMES)
+    sizes = [4 * (TILE[0] >> i) * (TILE[1] >> j) for i, j in np.ndindex(LEVELS)]
+    np.testing.assert_array_equal(np.diff(place.ravel()), sizes[:-1])
+    assert texels.shape == (len(NAMES), sum(sizes))
 
 
 def test_weaves_of_fewer_materials_are_rows_of_the_whole() -> None:
-    some = weave(("brick", "oak"))
-    for part, whole in zip(some, weave(NAMES), strict=True):
-        np.testing.assert_array_equal(part, whole[[NAMES.index("brick"), NAMES.index("oak")]])
+    some, every = weave(("brick", "oak")), weave(NAMES)
+    np.testing.assert_array_equal(some.texels, every.texels[[NAMES.index("brick"), NAMES.index("oak")]])
+    np.testing.assert_array_equal(some.place, every.place)
+
+
+def test_the_tint_is_the_mean_colour() -> None:
+    np.testing.assert_allclose(tint("oak"), texture("oak").mean(axis=(0, 1)), rtol=1e-6)

@@ -1,18 +1,18 @@
 """What must hold of the views of any room, from anywhere, through any camera."""
 
 import sys
+
 import numpy as np
 import pytest
 import shapely
-from hypothesis import HealthCheck, assume, example, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from arena import raycast
 from arena.arena import Arena
 from arena.camera import Camera
-from arena.materials import TEXEL
 from arena.parts import Solid
-from tests.arena.reference import PLATFORM, supersampled, trace
+from tests.arena.reference import supersampled, trace
 from tests.arena.strategies import arenas
 
 # beartype picks at random what it looks at in a list.
