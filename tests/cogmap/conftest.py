@@ -5,7 +5,7 @@ import pytest
 from arena import Arena, Brownian, Camera, Recording, explore
 from cogmap import CognitiveMap
 
-VIEWS, CHARTS = 2500, 700
+VIEWS, CHARTS = 3000, 800
 
 
 @pytest.fixture(scope="session")

@@ -57,8 +57,8 @@ def test_explore_learn_score(run, folder: Path, tmp_path: Path) -> None:
                    "--out", tmp_path / "fresh.zarr", "--json")  # fmt: skip
     assert explored[0] == 0
     assert json.loads(explored[1])["views"] == 400
-    assert run("learn", folder / "walk.zarr", "--out", tmp_path / "map", "--charts", 700)[0] == 0
-    assert CognitiveMap.load(tmp_path / "map").charts == 700
+    assert run("learn", folder / "walk.zarr", "--out", tmp_path / "map", "--charts", 900)[0] == 0
+    assert CognitiveMap.load(tmp_path / "map").charts == 900
     status, out, err = run(
         "score", tmp_path / "map", tmp_path / "fresh.zarr", "--train", folder / "walk.zarr", "--json"
     )
