@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.timing import ROOM, Figures, missing, one_core, rate, versus
 
-STEPS = 200
+STEPS = 400
 
 
 def stepping() -> Figures:
@@ -22,15 +22,17 @@ def stepping() -> Figures:
 
 
 def explorer() -> Callable[[], int]:
-    """Give work that steps through gymnasium's own wrappers at random velocities, without its checker."""
+    """Give work that steps through gymnasium's own wrappers, unchecked: runs, and spins at walls."""
     env = gymnasium.make("arena/Explorer-v0", arena=ROOM, max_episode_steps=10**9, disable_env_checker=True)
     env.reset(seed=0)
-    actions = np.random.default_rng(0).uniform(-1, 1, (STEPS, 2)).astype(np.float32)
-    actions[:, 0] = np.abs(actions[:, 0])
+    runs = np.random.default_rng(0).uniform((0.2, -0.5), (0.8, 0.5), (STEPS, 2)).astype(np.float32)
+    spin = np.array([0.0, 1.0], np.float32)
 
     def walk() -> int:
-        for action in actions:
-            env.step(action)
+        spins = 0
+        for run in runs:
+            *_, info = env.step(spin if spins else run)
+            spins = 12 if info["touched"] else max(0, spins - 1)
         return STEPS
 
     return walk
