@@ -155,7 +155,7 @@ def _paint(
     """Paint the view from one pose."""
     sights, span = np.empty(len(faces), SIGHT), np.empty((2 * len(faces), 2))
     hits, edges = np.empty(len(span), HIT), np.empty(2 * len(span) + 2)
-    strip = np.empty(4 * (int(faces["height"].max() / TEXEL) + BLOCK), np.float32)
+    strip = np.zeros(4 * (int(faces["height"].max() / TEXEL) + BLOCK), np.float32)
     texel, rows = np.empty(lens.height + BLOCK, np.int32), lens.height + BLOCK
     mix = np.empty(rows, np.float32), np.empty(rows, np.float32), np.empty(rows, np.float32)
     column, quad = np.empty(backdrop.shape[1], np.float32), np.empty((4, backdrop.shape[1]), np.uint8)

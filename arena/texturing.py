@@ -63,25 +63,12 @@ def _blend(
     """
     a, b, c = np.uint64(starts[0] + skip), np.uint64(starts[1] + skip), np.uint64(starts[2] + skip)
     wa, wb, wc = weight
-    to, length = np.uint64(at), whole(count)
-    if layer > 0:
+    to, length, keep = np.uint64(at), whole(count), np.float32(layer)
+    if layer > 0 or wc > 0:
         for n in range(length):
             k = np.uint64(n)
-            mean = (
-                wa * np.float32(texels[a + k])
-                + wb * np.float32(texels[b + k])
-                + wc * np.float32(texels[c + k])
-            )
-            strip[to + k] += mean
-    elif wc > 0:
-        for n in range(length):
-            k = np.uint64(n)
-            mean = (
-                wa * np.float32(texels[a + k])
-                + wb * np.float32(texels[b + k])
-                + wc * np.float32(texels[c + k])
-            )
-            strip[to + k] = mean
+            mean = wa * np.float32(texels[a + k]) + wb * np.float32(texels[b + k])
+            strip[to + k] = mean + wc * np.float32(texels[c + k]) + keep * strip[to + k]
     else:
         for n in range(length):
             k = np.uint64(n)

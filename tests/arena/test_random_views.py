@@ -1,7 +1,5 @@
 """What must hold of the views of any room, from anywhere, through any camera."""
 
-import sys
-
 import numpy as np
 import pytest
 import shapely
@@ -12,7 +10,7 @@ from arena import raycast
 from arena.arena import Arena
 from arena.camera import Camera
 from arena.parts import Solid
-from tests.arena.reference import supersampled, trace
+from tests.arena.reference import trace
 from tests.arena.strategies import arenas
 
 # beartype picks at random what it looks at in a list.
@@ -133,28 +131,5 @@ def outside(room: Arena, seed: int) -> np.ndarray:
 def test_what_is_seen_is_what_single_rays_meet(room: Arena, seed: int, camera: Camera) -> None:
     poses = outside(room, seed)
     wanted = np.stack([trace(room, camera, pose, 1).index for pose in poses])
-    assert (camera.identify(room, poses) != wanted).mean() < 1e-3
-
-
-@SLOW
-@given(
-    room=arenas().map(apart),
-    seed=st.integers(0, 2**32 - 1),
-    camera=st.sampled_from(CAMERAS),
-)
-def test_plain_surfaces_have_the_colours_that_single_rays_meet(
-    room: Arena, seed: int, camera: Camera
-) -> None:
-    room, poses = plain(room), outside(room, seed)
-    wanted = np.stack([supersampled(room, camera, pose, 8) for pose in poses])
-    error = np.abs(camera.render(room, poses) - wanted)
-    sys.stdout.write(f"{error.mean():.3f} {np.quantile(error, 0.99):.1f} {error.max():.1f}\n")
-
-
-def plain(room: Arena) -> Arena:
-    """Make everything white or blue."""
-    fields = room.model_dump()
-    for name in ("walls", "boxes", "pillars", "blocks"):
-        fields[name] = [{**part, "material": ("white", "blue")[k % 2]} for k, part in enumerate(fields[name])]
-    floor = room.floor if isinstance(room.floor, tuple) else "white"
-    return Arena.create(**{**fields, "floor": floor})
+    # Rays along edges may go either way.
+    assert (camera.identify(room, poses) != wanted).mean() < 0.01
