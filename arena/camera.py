@@ -208,10 +208,12 @@ def _words(images: Images) -> UInt32[np.ndarray, "views rows words"]:
 
 
 def _checked(poses: Poses) -> Float[np.ndarray, "views 3"]:
-    if np.ndim(poses) != 2 or np.shape(poses)[1] != 3:
-        raise ArenaError(f"the poses are of shape {np.shape(poses)}; give x, y (m) and heading (rad) a row")
-    if not np.isfinite(poses).all():
-        bad = int(np.flatnonzero(~np.isfinite(poses).all(axis=1))[0])
-        raise ArenaError(f"pose {bad} is {poses[bad]}; give finite x, y (m) and heading (rad)")
+    if poses.ndim != 2 or poses.shape[1] != 3:
+        raise ArenaError(f"the poses are of shape {poses.shape}; give x, y (m) and heading (rad) a row")
     # Of this layout only: the kernels would be compiled again for read-only poses.
-    return np.require(poses, np.float64, ["C", "A", "W"])
+    if poses.dtype != np.float64 or not poses.flags.carray:
+        poses = np.require(poses, np.float64, ["C", "A", "W"])
+    bad = raycast.unsound(poses)
+    if bad >= 0:
+        raise ArenaError(f"pose {bad} is {poses[bad]}; give finite x, y (m) and heading (rad)")
+    return poses

@@ -333,6 +333,16 @@ def _name(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> N
             out[r, c] = CEILING if r + 0.5 < horizon else beneath
 
 
+@njit(cache=True)
+@typing.no_type_check
+def unsound(poses: Poses) -> int:
+    """Find the first pose that is not finite; −1 when all are."""
+    for i in range(len(poses)):
+        if not (np.isfinite(poses[i, 0]) and np.isfinite(poses[i, 1]) and np.isfinite(poses[i, 2])):
+            return i
+    return -1
+
+
 @njit(parallel=True, cache=True, error_model="numpy")
 @typing.no_type_check
 def measure(poses: Poses, faces: Faces, lens: Lens, out: Float[np.ndarray, "views width"]) -> None:

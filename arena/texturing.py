@@ -115,17 +115,16 @@ def unroll(
     fade, length = fade_in(u1 - u0), 4 * (TILE[1] >> level)
     # Over less than one texel: linear interpolation.
     middle, half = 0.5 * (u0 + u1), min(max(0.5 * (u1 - u0), 0.5), 1.0)
-    fine_start, coarse_start = start + place[fine, level], start + place[fine + 1, level]
-    starts, weight = _lie(middle, half, gain * (1.0 - fade), fine_start, TILE[0] >> fine, length)
-    more, faint = _lie(
-        0.5 * middle, max(0.5 * half, 0.5), gain * fade, coarse_start, TILE[0] >> fine + 1, length
-    )
+    base, across = start + place[fine, level], TILE[0] >> fine
+    starts, weight = _lie(middle, half, gain * (1.0 - fade), base, across, length)
     v, at = up[0], 0
     while v < up[1]:
         skip = 4 * v & length - 1
         n = min(4 * (up[1] - v), length - skip)
         _blend(texels, starts, skip, weight, strip, at, n, 0)
         if fade > 0.0:  # before the next stretch, which overwrites what either layer leaves beyond this one
+            base = start + place[fine + 1, level]
+            more, faint = _lie(0.5 * middle, max(0.5 * half, 0.5), gain * fade, base, across >> 1, length)
             _blend(texels, more, skip, faint, strip, at, n, 1)
         at += n
         v += n // 4
