@@ -1,4 +1,4 @@
-"""The shape of a cloud of views: its words, its neighbour graph, its dimension, its holes, its coordinates."""
+"""The shape of a cloud of views: words, neighbours, degrees of freedom, holes, coordinates."""
 
 from cogmap.manifold.circular import Loop, circular_coordinate
 from cogmap.manifold.dimension import intrinsic_dimension

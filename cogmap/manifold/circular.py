@@ -119,7 +119,7 @@ def _spread_out(
     near = np.argpartition(paths, count - 1, axis=0)[:count]
     length = np.take_along_axis(paths, near, 0)
     weight = 1 / (length + 1e-3 * length.max())
-    return np.angle((weight * np.exp(1j * phases[near])).sum(axis=0))
+    return np.asarray(np.angle((weight * np.exp(1j * phases[near])).sum(axis=0)))
 
 
 def _harmonic(graph: sp.csr_array, phase: Float[np.ndarray, "points"]) -> Float[np.ndarray, "points"]:

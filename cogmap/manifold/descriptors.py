@@ -30,7 +30,7 @@ def keypoints(images: UInt8[np.ndarray, "images height width 3"]) -> Descriptors
     Lowe (2004), Distinctive image features from scale-invariant keypoints. Arandjelović & Zisserman (2012),
     Three things everyone should know to improve object retrieval.
     """
-    sift = cv2.SIFT_create()
+    sift = cv2.SIFT_create()  # type: ignore[attr-defined]
     found = [sift.detectAndCompute(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), None)[1] for image in images]
     none = np.empty((0, sift.descriptorSize()), np.float32)
     values = np.concatenate([none, *(one for one in found if one is not None)])

@@ -41,7 +41,7 @@ def intrinsic_dimension(X: Float[np.ndarray, "points features"], *, neighbours: 
     Comments on it: the mean of inverses.
     """
     checked_count("neighbours", neighbours, 3)
-    points = np.unique(checked_cloud(X), axis=0)
+    points = np.unique(np.asarray(checked_cloud(X)), axis=0)
     if len(points) <= neighbours:
         raise CogmapError(
             f"{len(points)} distinct points are too few for {neighbours} neighbours; "

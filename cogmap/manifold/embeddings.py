@@ -55,7 +55,9 @@ def embedding(method: Method, components: int = 4, *, neighbours: int = 15, seed
     if method == "landmark_isomap":
         return LandmarkIsomap(components, neighbours=neighbours, metric="cosine", seed=seed)
     if method == "isomap":
-        return Isomap(n_components=components, n_neighbors=neighbours)
+        isomap: Embedding = Isomap(n_components=components, n_neighbors=neighbours)
+        return isomap
     if method == "kernel_pca":
-        return KernelPCA(components, kernel="cosine", random_state=seed)
+        kernel_pca: Embedding = KernelPCA(components, kernel="cosine", random_state=seed)
+        return kernel_pca
     raise CogmapError(f"unknown method {method!r}; choose one of {', '.join(get_args(Method))}")

@@ -220,7 +220,7 @@ def _metric_space(
     if metric == "precomputed":
         distances = _checked_distances(X)
         return lambda point: distances[point], len(distances)
-    X = np.unique(checked_cloud(X), axis=0)
+    X = np.unique(np.asarray(checked_cloud(X)), axis=0)
     _check_enough(len(X))
     return geodesic(X, neighbours) if metric == "geodesic" else euclidean(X), len(X)
 

@@ -35,7 +35,8 @@ class Map(NamedTuple):
 
     def place(self, paths: Float[np.ndarray, "landmarks places"]) -> Float[np.ndarray, "places components"]:
         """Give the coordinates of what is so far from the landmarks."""
-        return (self.axes @ (paths**2 - self.mean[:, None])).T
+        placed: np.ndarray = (self.axes @ (paths**2 - self.mean[:, None])).T
+        return placed
 
 
 class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimator):

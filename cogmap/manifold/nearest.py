@@ -87,7 +87,7 @@ def nearest_points(
         raise CogmapError(f"unknown metric {metric!r}; choose one of {', '.join(get_args(Metric))}")
     if others is not None and others.shape[1] != cloud.shape[1]:
         raise CogmapError(
-            f"the queries have {others.shape[1]} features, the cloud {cloud.shape[1]}; give points of one kind"
+            f"the queries have {others.shape[1]} features but the cloud has {cloud.shape[1]}; give as many"
         )
     if cloud.shape[0] - (others is None) < neighbours:
         raise CogmapError(
@@ -148,14 +148,16 @@ def _by_descent(cloud: Checked, queries: Checked | None, neighbours: int) -> Nea
     # Imported here because its kernels take seconds to load.
     from pynndescent import NNDescent  # noqa: PLC0415
 
-    cloud = sp.csr_matrix(cloud) if sp.issparse(cloud) else cloud
-    index = NNDescent(cloud, n_neighbors=max(30, neighbours + 1), random_state=0)
+    index = NNDescent(_as_matrix(cloud), n_neighbors=max(30, neighbours + 1), random_state=0)
     if queries is not None:
-        return Nearest(
-            *index.query(sp.csr_matrix(queries) if sp.issparse(queries) else queries, k=neighbours)
-        )
+        return Nearest(*index.query(_as_matrix(queries), k=neighbours))
     indices, distances = index.neighbor_graph
     itself = indices == np.arange(len(indices))[:, None]
     # A stable sort by "is itself" moves each point behind its neighbours and leaves their order.
     order = np.argsort(itself, axis=1, kind="stable")[:, :neighbours]
     return Nearest(np.take_along_axis(indices, order, 1), np.take_along_axis(distances, order, 1))
+
+
+def _as_matrix(cloud: Checked) -> np.ndarray | sp.csr_matrix:
+    # pynndescent knows no sparse arrays yet.
+    return sp.csr_matrix(cloud) if sp.issparse(cloud) else cloud

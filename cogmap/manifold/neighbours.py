@@ -117,7 +117,7 @@ def neighbourhood_means(graph: sp.csr_array) -> sp.csr_array:
     return sp.csr_array(sp.diags_array(1 / joined.sum(axis=1)) @ joined)
 
 
-def checked_graph(graph: sp.csr_array | sp.csr_matrix) -> sp.csr_array:
+def checked_graph(graph: sp.csr_array) -> sp.csr_array:
     """Pass a symmetric graph of positive lengths through, without the zeros it may store.
 
     Raises
@@ -125,12 +125,12 @@ def checked_graph(graph: sp.csr_array | sp.csr_matrix) -> sp.csr_array:
     CogmapError
         When it is not square, not symmetric, or has a length that is not positive and finite.
     """
-    graph = sp.csr_array(graph, dtype=np.float64, copy=True)
+    graph = graph.astype(np.float64)
     graph.eliminate_zeros()
     if graph.shape[0] != graph.shape[1]:
         raise CogmapError(f"the graph has shape {graph.shape}; expected a square, (points, points)")
     if not (np.isfinite(graph.data) & (graph.data > 0)).all():
         raise CogmapError("the graph has lengths that are not positive and finite; leave those edges out")
-    if (graph != graph.T).nnz:
+    if abs(graph - graph.T).nnz:
         raise CogmapError("the graph is not symmetric; give each edge its length in both directions")
     return graph

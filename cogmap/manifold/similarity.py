@@ -40,12 +40,12 @@ def pixel_distances(queries: Any, views: Any) -> Distances:
     for first in range(0, views.shape[0], BLOCK):
         block = np.asarray(views[first : first + BLOCK])
         found.append(cdist(ours, block.reshape(len(block), -1).astype(np.float32)))
-    return np.concatenate(found, axis=1) / np.sqrt(ours.shape[1])
+    return np.asarray(np.concatenate(found, axis=1) / np.sqrt(ours.shape[1]))
 
 
 def cosine_distances(queries: sp.csr_array, views: sp.csr_array) -> Distances:
     """1 − cos between bags of words, rows of length one; 1 from a row of zeros."""
-    return 1 - (queries @ views.T).toarray().astype(np.float64)
+    return np.asarray(1 - (queries @ views.T).toarray().astype(np.float64))
 
 
 def earth_mover_distances(queries: Any, views: Any) -> Distances:

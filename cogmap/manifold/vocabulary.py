@@ -32,8 +32,8 @@ def learn_words(
         return distinct
     cv2.setRNGSeed(int(np.random.SeedSequence(seed).generate_state(1)[0] >> 1))
     stop = (cv2.TERM_CRITERIA_MAX_ITER, ROUNDS, 0.0)
-    words: np.ndarray = cv2.kmeans(examples, count, None, stop, 1, cv2.KMEANS_PP_CENTERS)[2]
-    return words
+    labels = np.empty((len(examples), 1), np.int32)
+    return np.asarray(cv2.kmeans(examples, count, labels, stop, 1, cv2.KMEANS_PP_CENTERS)[2])
 
 
 def nearest_words(

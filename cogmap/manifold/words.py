@@ -104,7 +104,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
         blocks = _blocks(X)
         sample = blocks[:: -(-len(blocks) * BLOCK // SAMPLE)]
         rest = [block for block in blocks if block not in sample]
-        with tqdm(total=X.shape[0], unit="view", disable=not self.progress) as bar:
+        with self._bar(X) as bar:
             described = list(self._over(_describe, X, sample, bar))
             kinds = ([one.values for one in kind] for kind in zip(*described, strict=True))
             self.vocabulary_, self.palette_ = self._crew()(
@@ -123,7 +123,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
         """Give the words that each view shows: float32 (views, words + colours)."""
         check_is_fitted(self)
         check_views(X)
-        with tqdm(total=X.shape[0], unit="view", disable=not self.progress) as bar:
+        with self._bar(X) as bar:
             shown = list(self._over(partial(_read, words=self._words), X, _blocks(X), bar))
         return self._weigh(sp.vstack(shown, format="csr"))
 
@@ -131,12 +131,15 @@ class BagOfWords(TransformerMixin, BaseEstimator):
     def _words(self) -> tuple[Words, Words]:
         return self.vocabulary_, self.palette_
 
+    def _bar(self, X: Any) -> tqdm[Any]:
+        return tqdm(total=X.shape[0], unit="view", disable=not self.progress)
+
     def _crew(self) -> Parallel:
         # Blocks go through pipes: joblib would write arrays of their size to a disk first.
         return Parallel(self.workers or cpu_count(), return_as="generator", max_nbytes=None)
 
     def _over(
-        self, work: Callable[[Images], Result], X: Any, blocks: list[slice], bar: tqdm
+        self, work: Callable[[Images], Result], X: Any, blocks: list[slice], bar: tqdm[Any]
     ) -> Iterator[Result]:
         """Work on blocks of views, in order."""
         results = self._crew()(delayed(work)(np.asarray(X[block])) for block in blocks)
@@ -147,7 +150,8 @@ class BagOfWords(TransformerMixin, BaseEstimator):
     def _weigh(self, shown: sp.csr_array) -> sp.csr_array:
         rows = sp.csr_array((self.idf_[shown.indices], shown.indices, shown.indptr), shape=shown.shape)
         rows.eliminate_zeros()
-        return normalize(rows, copy=False)
+        scaled: sp.csr_array = normalize(rows, copy=False)
+        return scaled
 
 
 def _blocks(X: Any) -> list[slice]:
