@@ -10,9 +10,10 @@ from jaxtyping import Float, Int, Num
 
 from cogmap.errors import CogmapError
 
-Cloud: TypeAlias = Num[np.ndarray, "points *features"] | sp.csr_array
-"""One row per point, as a matrix or as sparse rows."""
-Checked: TypeAlias = Float[np.ndarray, "points features"] | sp.csr_array
+Cloud: TypeAlias = Num[np.ndarray, "_ ..."] | sp.csr_array
+"""One row per point, (points, features), as a matrix or as sparse rows."""
+Checked: TypeAlias = Float[np.ndarray, "_ _"] | sp.csr_array
+"""A cloud that `checked_cloud` has passed."""
 
 
 class Distinct(NamedTuple):

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import scipy.sparse as sp
 from jaxtyping import Float, Int
 from scipy.linalg import eigh
 from scipy.sparse.csgraph import dijkstra
@@ -16,6 +17,7 @@ from cogmap.inputs import checked_count
 from cogmap.manifold.cloud import Cloud
 from cogmap.manifold.nearest import Metric, nearest_points
 from cogmap.manifold.neighbours import TINY, components, neighbour_graph, neighbourhood_means
+from cogmap.threads import one_thread
 
 BLOCK = 256
 """Points placed at a time."""
@@ -106,8 +108,8 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         self.metric = metric
         self.seed = seed
 
-    def fit(self, X: Cloud, y: object = None) -> LandmarkIsomap:
-        """Find the neighbours, the paths and the coordinates of a cloud (points, features)."""
+    def fit(self, X: Any, y: object = None) -> LandmarkIsomap:
+        """Find neighbours, paths and coordinates of a cloud, (points, features), dense or sparse."""
         del y
         checked_count("components", self.components)
         checked_count("landmarks", self.landmarks)
@@ -115,24 +117,26 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         self.graph_ = neighbour_graph(X, self.neighbours, metric=self.metric)
         self.pieces_ = components(self.graph_)
         self._position = np.empty(X.shape[0], dtype=int)
-        self.embedding_ = np.empty((X.shape[0], self.components))
+        self._single = np.empty((X.shape[0], self.components))
         rng = np.random.default_rng(self.seed)
         maps = []
-        for piece in range(self.pieces_.number):
-            points = np.flatnonzero(self.pieces_.labels == piece)
-            self._position[points] = np.arange(len(points))
-            maps.append(self._scale(points, rng))
-            self.embedding_[points] = maps[-1].place(maps[-1].paths)
+        with one_thread():
+            for piece in range(self.pieces_.number):
+                points = np.flatnonzero(self.pieces_.labels == piece)
+                self._position[points] = np.arange(len(points))
+                maps.append(self._scale(points, rng))
+                self._single[points] = maps[-1].place(maps[-1].paths)
         self.maps_ = tuple(maps)
+        self.embedding_ = self._single
         if self.averaging:
-            self.embedding_ = neighbourhood_means(self.graph_) @ self.embedding_
+            self.embedding_ = neighbourhood_means(self.graph_) @ self._single
         return self
 
-    def fit_transform(self, X: Cloud, y: object = None) -> Float[np.ndarray, "points components"]:
+    def fit_transform(self, X: Any, y: object = None) -> Float[np.ndarray, "points components"]:
         """Find the coordinates of a cloud."""
         return self.fit(X, y).embedding_
 
-    def transform(self, X: Cloud) -> Float[np.ndarray, "places components"]:
+    def transform(self, X: Any) -> Float[np.ndarray, "places components"]:
         """Place other points by way of their nearest neighbours in the cloud.
 
         Each goes to the map of its nearest neighbour; what is near to nothing gets NaN.
@@ -141,18 +145,18 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         X = self._checked(X, reset=False)
         ends, lengths = nearest_points(self._points, self.neighbours, queries=X, metric=self.metric)
         labels = np.where(ends < 0, -1, self.pieces_.labels[ends])
-        lengths = np.where(labels == labels[:, :1], lengths, np.inf)
+        near = (labels == labels[:, :1]) & (ends >= 0)
+        lengths = np.where(near, lengths, np.inf)
+        position = np.where(near, self._position[ends], 0)
         placed = np.full((X.shape[0], self.components), np.nan)
-        for first in range(0, X.shape[0], BLOCK):
-            block = slice(first, first + BLOCK)
-            for piece in np.unique(labels[block, 0][labels[block, 0] >= 0]):
-                here = first + np.flatnonzero(labels[block, 0] == piece)
-                chart = self.maps_[piece]
-                paths = (chart.paths[:, self._position[ends[here]]] + lengths[here]).min(axis=2)
-                placed[here] = chart.place(paths)
+        with one_thread():
+            for piece in np.unique(labels[near]):
+                chart, here = self.maps_[piece], np.flatnonzero(labels[:, 0] == piece)
+                for block in np.split(here, range(BLOCK, len(here), BLOCK)):
+                    paths = (chart.paths[:, position[block]] + lengths[block]).min(axis=2)
+                    placed[block] = chart.place(paths)
         if self.averaging:
-            near = np.isfinite(lengths)
-            known = np.where(near[:, :, None], self.embedding_[ends], 0).sum(axis=1)
+            known = np.where(near[:, :, None], self._single[ends], 0).sum(axis=1)
             placed = (placed + known) / (1 + near.sum(axis=1, keepdims=True))
         return placed
 
@@ -175,8 +179,8 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         axes *= np.sign(axes[np.arange(self.components), np.abs(axes).argmax(axis=1)] + 0.0)[:, None]
         return Map(points, paths, mean, axes)
 
-    def _checked(self, X: Cloud, *, reset: bool) -> Cloud:
-        checked: Cloud = validate_data(
+    def _checked(self, X: Any, *, reset: bool) -> Cloud:
+        checked = validate_data(
             self,
             X,
             reset=reset,
@@ -184,7 +188,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
             dtype=(np.float64, np.float32),
             ensure_min_samples=2 if reset else 1,
         )
-        return checked
+        return checked if isinstance(checked, np.ndarray) else sp.csr_array(checked)
 
     @property
     def _n_features_out(self) -> int:

@@ -83,8 +83,7 @@ def nearest_points(
     cloud = checked_cloud(cloud)
     others = None if queries is None else checked_cloud(queries)
     checked_count("neighbours", neighbours)
-    if metric not in get_args(Metric):
-        raise CogmapError(f"unknown metric {metric!r}; choose one of {', '.join(get_args(Metric))}")
+    check_metric(metric)
     if others is not None and others.shape[1] != cloud.shape[1]:
         raise CogmapError(
             f"the queries have {others.shape[1]} features but the cloud has {cloud.shape[1]}; give as many"
@@ -100,6 +99,12 @@ def nearest_points(
         return _by_descent(cloud, others, neighbours)
     distances, indices = NearestNeighbors(n_neighbors=neighbours).fit(cloud).kneighbors(others)
     return Nearest(indices, distances)
+
+
+def check_metric(metric: str) -> None:
+    """Raise for an unknown metric."""
+    if metric not in get_args(Metric):
+        raise CogmapError(f"unknown metric {metric!r}; choose one of {', '.join(get_args(Metric))}")
 
 
 def _by_direction(cloud: Checked, queries: Checked | None, neighbours: int, exact: int) -> Nearest:
