@@ -9,7 +9,7 @@ from jaxtyping import Float
 from sklearn.decomposition import KernelPCA
 from sklearn.manifold import Isomap
 
-from cogmap.errors import CogmapError
+from cogmap.inputs import check_choice
 from cogmap.manifold.cloud import Cloud
 from cogmap.manifold.isomap import LandmarkIsomap
 
@@ -52,12 +52,10 @@ def embedding(method: Method, components: int = 4, *, neighbours: int = 15, seed
     CogmapError
         For an unknown method.
     """
-    if method == "landmark_isomap":
-        return LandmarkIsomap(components, neighbours=neighbours, metric="cosine", seed=seed)
-    if method == "isomap":
-        isomap: Embedding = Isomap(n_components=components, n_neighbors=neighbours)
-        return isomap
-    if method == "kernel_pca":
-        kernel_pca: Embedding = KernelPCA(components, kernel="cosine", random_state=seed)
-        return kernel_pca
-    raise CogmapError(f"unknown method {method!r}; choose one of {', '.join(get_args(Method))}")
+    check_choice("method", method, get_args(Method))
+    methods: dict[Method, Embedding] = {
+        "landmark_isomap": LandmarkIsomap(components, neighbours=neighbours, metric="cosine", seed=seed),
+        "isomap": Isomap(n_components=components, n_neighbors=neighbours),
+        "kernel_pca": KernelPCA(components, kernel="cosine", random_state=seed),
+    }
+    return methods[method]

@@ -12,6 +12,7 @@ from jaxtyping import Float, Num
 from scipy.sparse.csgraph import connected_components
 
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_choice
 from cogmap.manifold import null
 from cogmap.manifold.cloud import checked_cloud
 from cogmap.manifold.neighbours import checked_graph
@@ -243,8 +244,7 @@ def _check_enough(points: int) -> None:
 
 
 def _check_options(metric: str, max_dimension: int, landmarks: tuple[int, int], draws: int) -> None:
-    if metric not in get_args(Metric):
-        raise CogmapError(f"unknown metric {metric!r}; choose one of {', '.join(get_args(Metric))}")
+    check_choice("metric", metric, get_args(Metric))
     if not 0 <= max_dimension <= 2:
         raise CogmapError(f"max_dimension is {max_dimension}; expected 0, 1 or 2")
     if min(landmarks) < FEWEST or draws < 1:

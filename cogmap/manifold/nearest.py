@@ -13,7 +13,7 @@ from sklearn.preprocessing import normalize
 from threadpoolctl import threadpool_limits
 
 from cogmap.errors import CogmapError
-from cogmap.inputs import checked_count
+from cogmap.inputs import check_choice, checked_count
 from cogmap.manifold.cloud import Checked, Cloud, checked_cloud
 from cogmap.manifold.ranking import offer_to_columns, offer_to_rows
 
@@ -83,7 +83,7 @@ def nearest_points(
     cloud = checked_cloud(cloud)
     others = None if queries is None else checked_cloud(queries)
     checked_count("neighbours", neighbours)
-    check_metric(metric)
+    check_choice("metric", metric, get_args(Metric))
     if others is not None and others.shape[1] != cloud.shape[1]:
         raise CogmapError(
             f"the queries have {others.shape[1]} features but the cloud has {cloud.shape[1]}; give as many"
@@ -99,12 +99,6 @@ def nearest_points(
         return _by_descent(cloud, others, neighbours)
     distances, indices = NearestNeighbors(n_neighbors=neighbours).fit(cloud).kneighbors(others)
     return Nearest(indices, distances)
-
-
-def check_metric(metric: str) -> None:
-    """Raise for an unknown metric."""
-    if metric not in get_args(Metric):
-        raise CogmapError(f"unknown metric {metric!r}; choose one of {', '.join(get_args(Metric))}")
 
 
 def _by_direction(cloud: Checked, queries: Checked | None, neighbours: int, exact: int) -> Nearest:

@@ -21,7 +21,8 @@ from cogmap.manifold.vocabulary import learn_words, nearest_words
 from cogmap.threads import one_thread
 
 Images = UInt8[np.ndarray, "images height width 3"]
-Words = Float32[np.ndarray, "words features"]
+Rows = Float32[np.ndarray, "_ _"]
+"""Words or descriptors, (words, features) or (spots, features); each kind has its own number of both."""
 Result = TypeVar("Result")
 
 BLOCK = 64
@@ -128,7 +129,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
         return self._weigh(sp.vstack(shown, format="csr"))
 
     @property
-    def _words(self) -> tuple[Words, Words]:
+    def _words(self) -> tuple[Rows, Rows]:
         return self.vocabulary_, self.palette_
 
     def _bar(self, X: Any) -> tqdm[Any]:
@@ -164,16 +165,16 @@ def _describe(images: Images) -> tuple[Descriptors, Descriptors]:
         return keypoints(images), patches(images)
 
 
-def _learn(descriptors: list[Words], count: int, seed: int) -> Words:
+def _learn(descriptors: list[Rows], count: int, seed: int) -> Rows:
     with one_thread():
         return learn_words(np.concatenate(descriptors), count, seed)
 
 
-def _read(images: Images, words: tuple[Words, Words]) -> sp.csr_array:
+def _read(images: Images, words: tuple[Rows, Rows]) -> sp.csr_array:
     return _show(_describe(images), words)
 
 
-def _show(described: tuple[Descriptors, Descriptors], words: tuple[Words, Words]) -> sp.csr_array:
+def _show(described: tuple[Descriptors, Descriptors], words: tuple[Rows, Rows]) -> sp.csr_array:
     """Tell which words occur in each image."""
     rows, columns, offset = [], [], 0
     with one_thread():

@@ -11,7 +11,7 @@ from sklearn.preprocessing import normalize
 from cogmap.errors import CogmapError
 from cogmap.manifold import nearest
 from cogmap.manifold.cloud import Cloud
-from cogmap.manifold.nearest import check_metric, nearest_points
+from cogmap.manifold.nearest import nearest_points
 from cogmap.manifold.ranking import offer_to_columns, offer_to_rows
 
 
@@ -169,8 +169,3 @@ GOOD = np.random.default_rng(5).normal(size=(20, 3))
 def test_bad_input_gets_one_sentence(cloud: np.ndarray, options: dict[str, object], message: str) -> None:
     with pytest.raises(CogmapError, match=message):
         nearest_points(cloud, **{"neighbours": 3, **options})
-
-
-def test_unknown_metric_gets_one_sentence() -> None:
-    with pytest.raises(CogmapError, match="'manhattan'; choose one of euclidean, cosine"):
-        check_metric("manhattan")
