@@ -53,7 +53,5 @@ def patches(images: UInt8[np.ndarray, "images height width 3"]) -> Descriptors:
 
 def _cells(image: UInt8[np.ndarray, "height width 3"]) -> Float32[np.ndarray, "rows columns 3"]:
     rows, columns = (max(2, round(2 * size / PATCH)) for size in image.shape[:2])
-    # Colours are averaged as light is recorded, in RGB; CIELAB then says how different the means look.
-    mean = cv2.resize(image.astype(np.float32) / 255, (columns, rows), interpolation=cv2.INTER_AREA)
-    lab: np.ndarray = cv2.cvtColor(mean, cv2.COLOR_RGB2LAB)
-    return lab
+    mean = cv2.resize(image, (columns, rows), interpolation=cv2.INTER_AREA)
+    return np.asarray(cv2.cvtColor(mean.astype(np.float32) / 255, cv2.COLOR_RGB2LAB))

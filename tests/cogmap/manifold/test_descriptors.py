@@ -30,7 +30,7 @@ def test_an_even_view_has_no_keypoints(views: np.ndarray) -> None:
 def test_patches_are_quarters_of_windows() -> None:
     image = np.random.default_rng(0).integers(0, 256, size=(1, 80, 112, 3), dtype=np.uint8)
     found = patches(image)
-    cells = image[0].reshape(5, 16, 7, 16, 3).mean(axis=(1, 3)) / 255
+    cells = np.round(image[0].reshape(5, 16, 7, 16, 3).mean(axis=(1, 3))) / 255
     lab = cv2.cvtColor(cells.astype(np.float32), cv2.COLOR_RGB2LAB)
     windows = extract_patches_2d(lab, (2, 2)).reshape(-1, 12)
     np.testing.assert_allclose(found.values, windows, atol=1e-3)
