@@ -14,6 +14,12 @@ def checked_count(name: str, value: object, least: int = 1) -> int:
     return int(value)
 
 
+def check_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
+    """Raise unless a name is one of those on offer."""
+    if value not in choices:
+        raise CogmapError(f"unknown {name} {value!r}; choose one of {', '.join(choices)}")
+
+
 def check_views(views: object, shape: tuple[int, ...] | None = None) -> None:
     """Raise unless `views` are uint8 images (views, height, width, 3), of `shape` when it is given."""
     found, dtype = getattr(views, "shape", None), getattr(views, "dtype", None)

@@ -7,16 +7,20 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
+import scipy.sparse as sp
 from jaxtyping import Float, Num
 from scipy.sparse.csgraph import connected_components
 
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_choice
 from cogmap.manifold import null
-from cogmap.manifold.neighbours import checked_cloud
+from cogmap.manifold.cloud import checked_cloud
+from cogmap.manifold.neighbours import checked_graph
 from cogmap.manifold.rips import (
     Bars,
     DistancesFrom,
     Landmarks,
+    along,
     euclidean,
     farthest_points,
     geodesic,
@@ -97,7 +101,7 @@ class _Found(NamedTuple):
 
 
 def betti(
-    X: Num[np.ndarray, "points *features"],
+    X: Num[np.ndarray, "points *features"] | sp.csr_array,
     metric: Metric = "geodesic",
     *,
     max_dimension: int = 2,
@@ -119,10 +123,12 @@ def betti(
     Parameters
     ----------
     X
-        The points; or with "precomputed" their distances (points, points), infinite between pieces.
-        Repeated points count once, and in the first two metrics their order changes nothing.
+        The points; or with "precomputed" their distances (points, points), infinite between pieces, or as a
+        sparse array their neighbour graph. Repeated points count once, and in the first two metrics their
+        order changes nothing.
     metric
-        "geodesic": shortest paths in the neighbour graph; "euclidean"; "precomputed": judged as Euclidean.
+        "geodesic": shortest paths in the neighbour graph; "euclidean"; "precomputed": distances are judged
+        as Euclidean ones, a graph by its shortest paths as "geodesic".
     max_dimension
         Highest dimension of homology, 0 to 2.
     seed
@@ -141,6 +147,7 @@ def betti(
     """
     _check_options(metric, max_dimension, landmarks, draws)
     distances_from, points = _metric_space(X, metric, neighbours)
+    judged: null.Metric = "geodesic" if metric == "geodesic" or sp.issparse(X) else "euclidean"
     wanted = [landmarks[dimension == 2] for dimension in range(max_dimension + 1)]
     starts = np.random.default_rng(seed).integers(points, size=draws)
     drawn = []
@@ -148,7 +155,7 @@ def betti(
         spread = farthest_points(distances_from, max(wanted), int(start))
         drawn.append(
             [
-                _find(spread, dimension, count, points=points, metric=metric, neighbours=neighbours)
+                _find(spread, dimension, count, points=points, metric=judged, neighbours=neighbours)
                 for dimension, count in enumerate(wanted)
             ]
         )
@@ -166,17 +173,11 @@ def betti(
 
 
 def _find(
-    spread: Landmarks, dimension: int, count: int, *, points: int, metric: Metric, neighbours: int
+    spread: Landmarks, dimension: int, count: int, *, points: int, metric: null.Metric, neighbours: int
 ) -> _Found:
     distances = spread.distances[:count, :count]
-    limit = null.threshold(
-        "geodesic" if metric == "geodesic" else "euclidean",
-        dimension,
-        points=points,
-        landmarks=len(distances),
-        neighbours=neighbours,
-    )
-    if metric != "geodesic" and dimension == 0:
+    limit = null.threshold(metric, dimension, points=points, landmarks=len(distances), neighbours=neighbours)
+    if metric == "euclidean" and dimension == 0:
         distances = _without_outliers(spread, limit)
     (bars,) = rips_bars(distances, [dimension])
     return _Found(bars, limit, len(distances))
@@ -206,12 +207,21 @@ def _over(found: Float[np.ndarray, "bars"], threshold: float, which: int) -> flo
 
 
 def _metric_space(
-    X: Num[np.ndarray, "points *features"], metric: Metric, neighbours: int
+    X: Num[np.ndarray, "points *features"] | sp.csr_array, metric: Metric, neighbours: int
 ) -> tuple[DistancesFrom, int]:
+    if sp.issparse(X):
+        if metric != "precomputed":
+            raise CogmapError(
+                f"X is sparse with the metric {metric!r}; "
+                "give its `neighbour_graph` and the metric 'precomputed'"
+            )
+        graph = checked_graph(X)
+        _check_enough(graph.shape[0])
+        return along(graph, neighbours), graph.shape[0]
     if metric == "precomputed":
         distances = _checked_distances(X)
         return lambda point: distances[point], len(distances)
-    X = np.unique(checked_cloud(X), axis=0)
+    X = np.unique(np.asarray(checked_cloud(X)), axis=0)
     _check_enough(len(X))
     return geodesic(X, neighbours) if metric == "geodesic" else euclidean(X), len(X)
 
@@ -234,8 +244,7 @@ def _check_enough(points: int) -> None:
 
 
 def _check_options(metric: str, max_dimension: int, landmarks: tuple[int, int], draws: int) -> None:
-    if metric not in get_args(Metric):
-        raise CogmapError(f"unknown metric {metric!r}; choose one of {', '.join(get_args(Metric))}")
+    check_choice("metric", metric, get_args(Metric))
     if not 0 <= max_dimension <= 2:
         raise CogmapError(f"max_dimension is {max_dimension}; expected 0, 1 or 2")
     if min(landmarks) < FEWEST or draws < 1:

@@ -1,4 +1,4 @@
-"""Who is next to whom in a cloud of vectors."""
+"""Who is next to whom in a cloud."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
-from jaxtyping import Float, Int, Num
+from jaxtyping import Int
 from scipy.sparse.csgraph import connected_components
-from sklearn.neighbors import NearestNeighbors
 
 from cogmap.errors import CogmapError
+from cogmap.manifold.cloud import Cloud, checked_cloud, distinct
+from cogmap.manifold.nearest import Metric, nearest_points
 
 TINY = float(np.finfo(np.float64).tiny)
 """Length of an edge between equal points: adds nothing to a path, yet is an edge, where a zero is none."""
@@ -20,26 +21,34 @@ DETOUR = 5.0
 
 
 class Components(NamedTuple):
-    """The connected pieces of a graph."""
+    """The connected pieces of a graph, the largest first."""
 
     number: int
     labels: Int[np.ndarray, "points"]
     """Which piece each point belongs to, from 0."""
 
+    @property
+    def sizes(self) -> Int[np.ndarray, "pieces"]:
+        """Points of each piece."""
+        return np.bincount(self.labels, minlength=self.number)
 
-def neighbour_graph(X: Num[np.ndarray, "points *features"], neighbours: int = 15) -> sp.csr_array:
-    """Join every point to its nearest neighbours, exactly, by edges as long as they are apart.
 
-    An edge runs both ways when either end counts the other among its nearest. Repeated points count once:
-    the nearest *other* points are sought among the distinct ones, and each repeat hangs on the first of its
-    kind by an edge of length `TINY`. Nothing else is joined: a cloud in pieces stays in pieces.
+def neighbour_graph(X: Cloud, neighbours: int = 15, *, metric: Metric = "euclidean") -> sp.csr_array:
+    """Join every point to its nearest neighbours by edges as long as they are apart.
+
+    An edge runs both ways when either end counts the other among its nearest (`nearest.nearest`: exact up to
+    50,000 points). Repeated points count once: the nearest *other* points are sought among the distinct ones,
+    and each repeat hangs on the first of its kind by an edge of length `TINY`. Nothing else is joined: a
+    cloud in pieces stays in pieces, and a point that is near to nothing stays alone.
 
     Parameters
     ----------
     X
-        Vectors, compared by Euclidean distance.
+        Points, one row each, dense or sparse.
     neighbours
         How many nearest points to join each point to.
+    metric
+        "euclidean", or "cosine" for bags of words.
 
     Returns
     -------
@@ -50,22 +59,22 @@ def neighbour_graph(X: Num[np.ndarray, "points *features"], neighbours: int = 15
     CogmapError
         When X is not a finite matrix or has no more distinct points than `neighbours`.
     """
-    X = checked_cloud(X)
     if neighbours < 1:
         raise CogmapError(f"neighbours is {neighbours}; ask for at least one nearest neighbour")
-    distinct, first, same = np.unique(X, axis=0, return_index=True, return_inverse=True)
-    if len(distinct) <= neighbours:
+    points, first, same = distinct(checked_cloud(X))
+    if points.shape[0] <= neighbours:
         raise CogmapError(
-            f"{len(distinct)} distinct points cannot have {neighbours} nearest neighbours each; "
+            f"{points.shape[0]} distinct points cannot have {neighbours} nearest neighbours each; "
             "give more points or ask for fewer neighbours"
         )
-    lengths, ends = NearestNeighbors(n_neighbors=neighbours).fit(distinct).kneighbors()
-    repeats = np.setdiff1d(np.arange(len(X)), first)
-    rows = np.concatenate([np.repeat(first, neighbours), repeats])
-    columns = np.concatenate([first[ends.ravel()], first[same.ravel()[repeats]]])
+    ends, lengths = nearest_points(points, neighbours, metric=metric)
+    found = ends >= 0
+    repeats = np.setdiff1d(np.arange(X.shape[0]), first)
+    rows = np.concatenate([np.repeat(first, found.sum(axis=1)), repeats])
+    columns = np.concatenate([first[ends[found]], first[same.ravel()[repeats]]])
     # Distinct points can be nearer than rounding tells; the edge must survive that.
-    values = np.concatenate([np.maximum(lengths.ravel(), TINY), np.full(len(repeats), TINY)])
-    graph = sp.csr_array((values.astype(np.float64), (rows, columns)), shape=(len(X), len(X)))
+    values = np.concatenate([np.maximum(lengths[found], TINY), np.full(len(repeats), TINY)])
+    graph = sp.csr_array((values.astype(np.float64), (rows, columns)), shape=(X.shape[0], X.shape[0]))
     return sp.csr_array(graph.maximum(graph.T))
 
 
@@ -98,19 +107,30 @@ def lengthen_shortcuts(graph: sp.csr_array, shared: int = 3) -> sp.csr_array:
 def components(graph: sp.csr_array) -> Components:
     """Split a symmetric graph into its connected pieces."""
     count, labels = connected_components(graph, directed=False)
-    return Components(int(count), labels)
+    order = np.argsort(-np.bincount(labels, minlength=count), kind="stable")
+    return Components(int(count), np.argsort(order)[labels])
 
 
-def checked_cloud(X: Num[np.ndarray, "points *features"]) -> Float[np.ndarray, "points features"]:
-    """Pass a finite matrix through as floats.
+def neighbourhood_means(graph: sp.csr_array) -> sp.csr_array:
+    """Make the matrix that gives each point the mean of itself and those it is joined to."""
+    joined = sp.csr_array(graph.astype(bool) + sp.eye_array(graph.shape[0]))
+    return sp.csr_array(sp.diags_array(1 / joined.sum(axis=1)) @ joined)
+
+
+def checked_graph(graph: sp.csr_array) -> sp.csr_array:
+    """Pass a symmetric graph of positive lengths through, without the zeros it may store.
 
     Raises
     ------
     CogmapError
-        When X has not two axes, no features, or a value that is not finite.
+        When it is not square, not symmetric, or has a length that is not positive and finite.
     """
-    if X.ndim != 2 or X.shape[1] == 0:
-        raise CogmapError(f"the cloud has shape {X.shape}; expected one row per point, (points, features)")
-    if not np.isfinite(X).all():
-        raise CogmapError("the cloud holds NaN or infinite values; remove those points first")
-    return X if np.issubdtype(X.dtype, np.floating) else X.astype(np.float64)
+    graph = graph.astype(np.float64)
+    graph.eliminate_zeros()
+    if graph.shape[0] != graph.shape[1]:
+        raise CogmapError(f"the graph has shape {graph.shape}; expected a square, (points, points)")
+    if not (np.isfinite(graph.data) & (graph.data > 0)).all():
+        raise CogmapError("the graph has lengths that are not positive and finite; leave those edges out")
+    if abs(graph - graph.T).nnz:
+        raise CogmapError("the graph is not symmetric; give each edge its length in both directions")
+    return graph

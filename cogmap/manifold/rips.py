@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import scipy.sparse as sp
 from gudhi.sklearn import RipsPersistence
 from jaxtyping import Float, Int
 from scipy.sparse.csgraph import dijkstra
@@ -36,7 +37,12 @@ def euclidean(X: Float[np.ndarray, "points features"]) -> DistancesFrom:
 
 def geodesic(X: Float[np.ndarray, "points features"], neighbours: int) -> DistancesFrom:
     """Shortest paths in the neighbour graph, shunning its shortcuts; infinite between its pieces."""
-    graph = lengthen_shortcuts(neighbour_graph(X, neighbours), neighbours // 5)
+    return along(neighbour_graph(X, neighbours), neighbours)
+
+
+def along(graph: sp.csr_array, neighbours: int) -> DistancesFrom:
+    """Shortest paths in a graph that joins each point to so many neighbours, shunning its shortcuts."""
+    graph = lengthen_shortcuts(graph, neighbours // 5)
     return lambda point: np.asarray(dijkstra(graph, indices=[point])[0])
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_views, checked_count, log_odours
+from cogmap.inputs import check_choice, check_views, checked_count, log_odours
 
 
 @pytest.mark.parametrize("value", [0, -3, 2.5, "7", None, True])
@@ -13,6 +13,12 @@ def test_counts_are_whole_and_positive(value: object) -> None:
 
 def test_counts_may_be_numpy() -> None:
     assert checked_count("charts", np.int64(3)) == 3
+
+
+def test_choices_are_told() -> None:
+    check_choice("metric", "cosine", ("euclidean", "cosine"))
+    with pytest.raises(CogmapError, match="unknown metric 'manhattan'; choose one of euclidean, cosine"):
+        check_choice("metric", "manhattan", ("euclidean", "cosine"))
 
 
 def test_log_odours() -> None:

@@ -2,10 +2,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from scipy.spatial.distance import cdist
 
 from cogmap.errors import CogmapError
 from cogmap.manifold.homology import Betti, _check_options, betti
+from cogmap.manifold.neighbours import neighbour_graph
 from cogmap.manifold.rips import farthest_points, geodesic, rips_bars
 from cogmap.testing import assert_betti
 
@@ -111,6 +113,16 @@ def test_precomputed_distances_give_what_the_points_give() -> None:
         np.testing.assert_array_equal(one, other)
 
 
+@pytest.mark.parametrize("space", [cylinder, two_discs], ids=lambda s: s.__name__)
+def test_neighbour_graph_gives_what_the_points_give(space: Sampler) -> None:
+    X = np.unique(space(800, np.random.default_rng(12)), axis=0)
+    points = betti(X, landmarks=FEW)
+    graph = betti(neighbour_graph(X), "precomputed", landmarks=FEW)
+    assert str(graph) == str(points).replace("geodesic", "precomputed")
+    for one, other in zip(points.bars, graph.bars, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
 def test_outliers_are_no_pieces() -> None:
     rng = np.random.default_rng(5)
     X = np.concatenate([disc(1000, rng), [[5, 5], [-6, 2], [0, 9], [0.1, 9]]])
@@ -202,9 +214,14 @@ APART = cdist(GOOD, GOOD)
         (APART * np.nan, {"metric": "precomputed"}, "NaN"),
         (np.triu(APART), {"metric": "precomputed"}, "not symmetric"),
         (APART + 1, {"metric": "precomputed"}, "zero diagonal"),
+        (sp.csr_array(APART), {}, "sparse with the metric 'geodesic'"),
+        (sp.csr_array(APART[:5, :5]), {"metric": "precomputed"}, "5 distinct points"),
+        (sp.csr_array(np.triu(APART)), {"metric": "precomputed"}, "graph is not symmetric"),
     ],
 )
-def test_bad_input_gets_one_sentence(X: np.ndarray, options: dict[str, object], message: str) -> None:
+def test_bad_input_gets_one_sentence(
+    X: np.ndarray | sp.csr_array, options: dict[str, object], message: str
+) -> None:
     with pytest.raises(CogmapError, match=message) as caught:
         betti(X, **options)
     assert "\n" not in str(caught.value)

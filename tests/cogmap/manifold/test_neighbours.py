@@ -6,7 +6,15 @@ from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
 
 from cogmap.errors import CogmapError
-from cogmap.manifold.neighbours import DETOUR, TINY, components, lengthen_shortcuts, neighbour_graph
+from cogmap.manifold.neighbours import (
+    DETOUR,
+    TINY,
+    checked_graph,
+    components,
+    lengthen_shortcuts,
+    neighbour_graph,
+    neighbourhood_means,
+)
 
 
 @given(st.integers(0, 1000), st.integers(1, 8), st.integers(1, 20))
@@ -82,6 +90,74 @@ def test_a_curve_has_no_shortcuts(neighbours: int) -> None:
     angle = np.linspace(0, 2 * np.pi, 200, endpoint=False)
     graph = neighbour_graph(np.stack([np.cos(angle), np.sin(angle)], axis=1), neighbours)
     assert (lengthen_shortcuts(graph, neighbours // 5) != graph).nnz == 0
+
+
+def bags(views: int, rng: np.random.Generator) -> sp.csr_array:
+    return sp.csr_array((rng.uniform(size=(views, 50)) < 0.3) * rng.uniform(0.5, 2, 50))
+
+
+def test_graph_of_words_joins_by_chords() -> None:
+    X = bags(60, np.random.default_rng(6))
+    unit = X.toarray() / np.linalg.norm(X.toarray(), axis=1, keepdims=True)
+    expected = neighbour_graph(unit, 5)
+    np.testing.assert_allclose(
+        neighbour_graph(X, 5, metric="cosine").toarray(), expected.toarray(), atol=1e-7
+    )
+    np.testing.assert_allclose(
+        neighbour_graph(sp.csr_array(unit), 5).toarray(), expected.toarray(), atol=1e-7
+    )
+
+
+def test_views_that_share_no_word_are_not_joined() -> None:
+    rng = np.random.default_rng(7)
+    X = np.zeros((90, 110))
+    X[:40, :50], X[40:80, 50:100] = bags(40, rng).toarray(), bags(40, rng).toarray()
+    X[80:85, 100:] = rng.uniform(0.1, 1, size=(5, 10))
+    graph = neighbour_graph(sp.csr_array(X), 8, metric="cosine")
+    found = components(graph)
+    np.testing.assert_array_equal(np.sort(found.sizes), [5, 5, 40, 40])
+    # Fewer than eight others to be near to, and views without words, which repeat each other.
+    np.testing.assert_array_equal((graph[80:85] > 0).sum(axis=1), 4)
+    np.testing.assert_array_equal(graph[85:, 85].toarray().ravel(), [0, TINY, TINY, TINY, TINY])
+
+
+def test_constant_views_are_one_point_too_few() -> None:
+    with pytest.raises(CogmapError, match="1 distinct points"):
+        neighbour_graph(sp.csr_array(np.ones((30, 4))), 3, metric="cosine")
+
+
+def test_components_are_reported_largest_first() -> None:
+    edges = sp.coo_array((np.ones(5), ([1, 2, 4, 5, 8], [2, 3, 5, 6, 9])), shape=(10, 10))
+    number, labels = found = components(sp.csr_array(edges + edges.T))
+    assert number == 5
+    np.testing.assert_array_equal(found.sizes, [3, 3, 2, 1, 1])
+    np.testing.assert_array_equal(labels, [3, 0, 0, 0, 1, 1, 1, 4, 2, 2])
+
+
+def test_means_are_over_a_point_and_its_neighbours() -> None:
+    graph = neighbour_graph(np.random.default_rng(8).normal(size=(40, 2)), 4)
+    near = (graph.toarray() > 0) | np.eye(40, dtype=bool)
+    np.testing.assert_allclose(neighbourhood_means(graph).toarray(), near / near.sum(axis=1, keepdims=True))
+
+
+@pytest.mark.parametrize(
+    ("graph", "message"),
+    [
+        (np.ones((3, 4)), r"shape \(3, 4\)"),
+        (np.array([[0, -1], [-1, 0]]), "not positive"),
+        (np.array([[0, np.nan], [np.nan, 0]]), "not positive and finite"),
+        (np.array([[0, 1, 0], [2, 0, 0], [0, 0, 0]]), "not symmetric"),
+    ],
+)
+def test_bad_graph_gets_one_sentence(graph: np.ndarray, message: str) -> None:
+    with pytest.raises(CogmapError, match=message):
+        checked_graph(sp.csr_array(graph))
+
+
+def test_stored_zeros_are_no_edges() -> None:
+    stored = sp.csr_array((np.array([1.0, 0.0, 1.0, 0.0]), ([0, 0, 1, 2], [1, 2, 0, 0])), shape=(3, 3))
+    assert checked_graph(stored).nnz == 2
+    assert stored.nnz == 4
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,58 @@
+"""Clouds of points: one row each, dense or sparse."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+import scipy.sparse as sp
+from jaxtyping import Float, Int, Num
+
+from cogmap.errors import CogmapError
+
+Cloud: TypeAlias = Num[np.ndarray, "_ ..."] | sp.csr_array
+"""One row per point, (points, features), as a matrix or as sparse rows."""
+Checked: TypeAlias = Float[np.ndarray, "_ _"] | sp.csr_array
+"""A cloud that `checked_cloud` has passed."""
+
+
+class Distinct(NamedTuple):
+    """The points of a cloud without their repeats."""
+
+    points: Checked
+    first: Int[np.ndarray, "distinct"]
+    """Where each of them first occurs in the cloud."""
+    same: Int[np.ndarray, "points"]
+    """Which of them each point of the cloud is."""
+
+
+def checked_cloud(X: Cloud) -> Checked:
+    """Pass a finite matrix through as floats; sparse rows get canonical, and are copied if they were not.
+
+    Raises
+    ------
+    CogmapError
+        When X has not two axes, no features, or a value that is not finite.
+    """
+    if X.ndim != 2 or X.shape[1] == 0:
+        raise CogmapError(f"the cloud has shape {X.shape}; expected one row per point, (points, features)")
+    if not np.isfinite(X.data if sp.issparse(X) else X).all():
+        raise CogmapError("the cloud holds NaN or infinite values; remove those points first")
+    if sp.issparse(X):
+        X = sp.csr_array(X)
+        if not X.has_canonical_format or not X.data.all():
+            X = X.copy()
+            X.sum_duplicates()
+            X.eliminate_zeros()
+    return X if np.issubdtype(X.dtype, np.floating) else X.astype(np.float64)
+
+
+def distinct(X: Checked) -> Distinct:
+    """Find which points of a checked cloud repeat others."""
+    if not sp.issparse(X):
+        return Distinct(*np.unique(X, axis=0, return_index=True, return_inverse=True))
+    rows = np.empty(X.shape[0], dtype=object)
+    for row, (start, end) in enumerate(zip(X.indptr[:-1], X.indptr[1:], strict=True)):
+        rows[row] = X.indices[start:end].tobytes() + X.data[start:end].tobytes()
+    _, first, same = np.unique(rows, return_index=True, return_inverse=True)
+    return Distinct(X[first], first, same)

@@ -1,0 +1,155 @@
+"""How different two views are: three measures, and how well each knows views from nearby poses."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+from jaxtyping import Float
+from scipy.spatial.distance import cdist
+
+from cogmap.cells.checks import check_array
+from cogmap.errors import CogmapError
+from cogmap.inputs import check_views, checked_count
+
+Distances = Float[np.ndarray, "queries views"]
+
+BLOCK = 256
+"""Views compared at a time."""
+METRES_PER_RADIAN = 0.5
+"""How far one would walk rather than turn by a radian."""
+
+
+def pixel_distances(queries: Any, views: Any) -> Distances:
+    """Root-mean-square difference of pixel values, 0 to 255.
+
+    Parameters
+    ----------
+    queries, views
+        uint8 images (views, height, width, 3); `views` may lie on disk.
+
+    Raises
+    ------
+    CogmapError
+        For anything but images of one size.
+    """
+    _check_pair(queries, views)
+    ours = np.asarray(queries).reshape(queries.shape[0], -1).astype(np.float32)
+    found = []
+    for first in range(0, views.shape[0], BLOCK):
+        block = np.asarray(views[first : first + BLOCK])
+        found.append(cdist(ours, block.reshape(len(block), -1).astype(np.float32)))
+    return np.asarray(np.concatenate(found, axis=1) / np.sqrt(ours.shape[1]))
+
+
+def cosine_distances(queries: sp.csr_array, views: sp.csr_array) -> Distances:
+    """1 − cos between bags of words, rows of length one; 1 from a row of zeros."""
+    return np.asarray(1 - (queries @ views.T).toarray().astype(np.float64))
+
+
+def earth_mover_distances(queries: Any, views: Any) -> Distances:
+    r"""How far light must be moved around to turn one panoramic strip into another, rad.
+
+    Each colour of a strip is a distribution of light over azimuth, scaled to one. The least work between two
+    of them, with cumulative sums F and G over the columns, is
+
+    .. math:: \min_c \sum_j |F_j - G_j - c| \, \Delta, \qquad c = \operatorname{median}_j (F_j - G_j),
+
+    where Δ is the width of a column; the distance is the mean over the colours.
+
+    Parameters
+    ----------
+    queries, views
+        uint8 panoramic strips (views, height, width, 3); `views` may lie on disk.
+
+    Raises
+    ------
+    CogmapError
+        For anything but images of one size.
+
+    References
+    ----------
+    Rabin, Delon & Gousseau (2011), Transportation distances on the circle.
+    """
+    _check_pair(queries, views)
+    ours = _cumulative_light(np.asarray(queries))
+    found = np.empty((queries.shape[0], views.shape[0]))
+    for first in range(0, views.shape[0], BLOCK):
+        theirs = _cumulative_light(np.asarray(views[first : first + BLOCK]))
+        for query, one in enumerate(ours):
+            ahead = one - theirs
+            ahead -= np.median(ahead, axis=1, keepdims=True)
+            found[query, first : first + BLOCK] = np.abs(ahead).mean(axis=(1, 2))
+    return 2 * np.pi * found
+
+
+class Agreement(NamedTuple):
+    """How well neighbours in the image are neighbours in pose."""
+
+    recall: float
+    """Share of the nearest views that are among as many nearest in pose."""
+    position_median_m: float
+    heading_median_deg: float
+    """From a query to its nearest views."""
+
+
+def pose_agreement(
+    distances: Distances,
+    query_poses: Float[np.ndarray, "queries 3"],
+    poses: Float[np.ndarray, "views 3"],
+    *,
+    neighbours: int = 10,
+) -> Agreement:
+    """Compare the views at the smallest distances with those from the nearest poses.
+
+    Poses are as far apart as √(Δx² + Δy² + (0.5 m/rad · Δθ)²), Δθ the short way round.
+
+    Parameters
+    ----------
+    distances
+        Of every view from every query, by any measure.
+    query_poses, poses
+        Where queries and views were taken: m, m, rad.
+    neighbours
+        How many nearest to compare.
+
+    Raises
+    ------
+    CogmapError
+        For shapes that do not match, values that are not finite, fewer views than neighbours.
+    """
+    check_array("distances", distances, (None, None))
+    check_array("query_poses", query_poses, (len(distances), 3))
+    check_array("poses", poses, (distances.shape[1], 3))
+    if checked_count("neighbours", neighbours) > len(poses):
+        raise CogmapError(f"{len(poses)} views are too few for {neighbours} neighbours; ask for fewer")
+    walk = cdist(query_poses[:, :2], poses[:, :2])
+    turn = np.abs(np.angle(np.exp(1j * (query_poses[:, None, 2] - poses[:, 2]))))
+    alike = np.argsort(distances, axis=1, kind="stable")[:, :neighbours]
+    close = np.argsort(np.hypot(walk, METRES_PER_RADIAN * turn), axis=1, kind="stable")[:, :neighbours]
+    hits = (alike[:, :, None] == close[:, None, :]).any(axis=2)
+    return Agreement(
+        recall=float(hits.mean()),
+        position_median_m=float(np.median(np.take_along_axis(walk, alike, 1))),
+        heading_median_deg=float(np.rad2deg(np.median(np.take_along_axis(turn, alike, 1)))),
+    )
+
+
+def _cumulative_light(
+    strips: np.ndarray,
+) -> Float[np.ndarray, "views columns colours"]:
+    # A black strip has no light to move: it counts as evenly lit.
+    light = strips.sum(axis=1, dtype=np.float64)
+    total = light.sum(axis=1, keepdims=True)
+    return np.cumsum(np.where(total > 0, light, 1) / np.where(total > 0, total, light.shape[1]), axis=1)
+
+
+def _check_pair(queries: Any, views: Any) -> None:
+    check_views(queries)
+    check_views(views)
+    if tuple(queries.shape[1:]) != tuple(views.shape[1:]):
+        raise CogmapError(
+            f"queries have shape {tuple(queries.shape[1:])} and views {tuple(views.shape[1:])}; "
+            "give images of one size"
+        )
