@@ -32,6 +32,7 @@ from arena import (
 )
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
+from cogmap.experiments.catalogue import experiment
 from cogmap.experiments.demo import demo
 from cogmap.plots import plot_room, plot_sheet
 from cogmap.scoring import score
@@ -101,6 +102,46 @@ def _demo(
     if not metrics["trusted"]:
         sys.stderr.write(f"cogmap: this map is not to be trusted: {metrics['reason']}\n")
     _report(metrics, as_json=as_json)
+
+
+@app.command(name="experiment")
+def _experiment(
+    name: str,
+    /,
+    *,
+    arena: str | None = None,
+    views: int | None = None,
+    seed: Seed = 0,
+    out: Path | None = None,
+    as_json: Json = False,
+) -> None:
+    """Run an experiment of the paper: a table of metrics, figures, and the data behind them.
+
+    The experiments are rotation, cyclic, brownian, similarity, localisation, roadmap and distinguishability.
+
+    Examples: `cogmap experiment rotation`; `cogmap experiment brownian --views 4000 --seed 1 --out walk`;
+    `cogmap experiment localisation --arena obstacles --json`.
+
+    Parameters
+    ----------
+    name
+        Of the experiment.
+    arena
+        A room of the gallery or a TOML file; the experiment's own by default.
+    views
+        To learn from; as many as in the paper by default.
+    out
+        Folder for metrics, figures and data; the name of the experiment by default.
+    """
+    result = experiment(
+        name,
+        Path(name) if out is None else out,
+        room=None if arena is None else Arena.load(arena),
+        views=views,
+        seed=seed,
+        progress=sys.stderr.isatty(),
+    )
+    _report(result.metrics, as_json=as_json)
 
 
 @app.command(name="arena")

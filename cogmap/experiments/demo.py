@@ -31,6 +31,7 @@ from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.experiments.homologies import homologies
 from cogmap.experiments.outputs import METRICS, result_folder
+from cogmap.experiments.setting import FRESH_SEED, poses_of
 from cogmap.inputs import checked_count
 from cogmap.manifold.homology import Betti
 from cogmap.plots import (
@@ -46,8 +47,6 @@ from cogmap.scoring import score
 
 FRESH = 5000
 """Views of the recording that scores are taken on, or as many as were learnt from when these are fewer."""
-FRESH_SEED = 1000
-"""Added to the seed for the fresh recording."""
 
 
 @dataclass
@@ -128,7 +127,7 @@ def demo(
         if not np.isfinite(cmap.phase_eigenvalue_):
             raise CogmapError(f"the map has no compass: {cmap.reason_}")
         with clock("perceive"):
-            learnt, fresh = (Outing(walk, _poses(walk), cmap.perceive(walk.views)) for walk in walks)
+            learnt, fresh = (Outing(walk, poses_of(walk), cmap.perceive(walk.views)) for walk in walks)
         with clock("score"):
             figures = _score(room, learnt, fresh)
         with clock("homology"):
@@ -196,13 +195,6 @@ def _draw(folder: Path, room: Arena, learnt: Outing, fresh: Outing, bars: dict[s
     }
     for name, figure in drawings.items():
         figure.savefig(folder / f"{name}.png")
-
-
-def _poses(recording: Recording) -> np.ndarray:
-    """Ground truth, which `explore` always records."""
-    if recording.poses is None:
-        raise ValueError("a fresh recording has poses")
-    return recording.poses
 
 
 def _peak_memory() -> int:

@@ -12,6 +12,7 @@ from cogmap.manifold.similarity import (
     Agreement,
     cosine_distances,
     earth_mover_distances,
+    motion_distances,
     pixel_distances,
     pose_agreement,
 )
@@ -35,6 +36,7 @@ __all__ = [
     "height_coordinate",
     "intrinsic_dimension",
     "lengthen_shortcuts",
+    "motion_distances",
     "nearest_points",
     "neighbour_graph",
     "pixel_distances",

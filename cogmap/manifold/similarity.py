@@ -84,6 +84,22 @@ def earth_mover_distances(queries: Any, views: Any) -> Distances:
     return 2 * np.pi * found
 
 
+def motion_distances(
+    queries: Float[np.ndarray, "queries 3"], poses: Float[np.ndarray, "views 3"]
+) -> Distances:
+    """How far apart poses are for a body: √(Δx² + Δy² + (0.5 m/rad · Δθ)²) in m, Δθ the short way round.
+
+    Raises
+    ------
+    CogmapError
+        For anything but poses (views, 3) of m, m, rad.
+    """
+    check_array("queries", queries, (None, 3))
+    check_array("poses", poses, (None, 3))
+    walk = cdist(queries[:, :2], poses[:, :2])
+    return np.asarray(np.hypot(walk, METRES_PER_RADIAN * _turns(queries, poses)))
+
+
 class Agreement(NamedTuple):
     """How well neighbours in the image are neighbours in pose."""
 
@@ -103,7 +119,7 @@ def pose_agreement(
 ) -> Agreement:
     """Compare the views at the smallest distances with those from the nearest poses.
 
-    Poses are as far apart as √(Δx² + Δy² + (0.5 m/rad · Δθ)²), Δθ the short way round.
+    Poses are as far apart as `motion_distances` says.
 
     Parameters
     ----------
@@ -124,16 +140,21 @@ def pose_agreement(
     check_array("poses", poses, (distances.shape[1], 3))
     if checked_count("neighbours", neighbours) > len(poses):
         raise CogmapError(f"{len(poses)} views are too few for {neighbours} neighbours; ask for fewer")
-    walk = cdist(query_poses[:, :2], poses[:, :2])
-    turn = np.abs(np.angle(np.exp(1j * (query_poses[:, None, 2] - poses[:, 2]))))
     alike = np.argsort(distances, axis=1, kind="stable")[:, :neighbours]
-    close = np.argsort(np.hypot(walk, METRES_PER_RADIAN * turn), axis=1, kind="stable")[:, :neighbours]
+    close = np.argsort(motion_distances(query_poses, poses), axis=1, kind="stable")[:, :neighbours]
+    walk = cdist(query_poses[:, :2], poses[:, :2])
+    turn = _turns(query_poses, poses)
     hits = (alike[:, :, None] == close[:, None, :]).any(axis=2)
     return Agreement(
         recall=float(hits.mean()),
         position_median_m=float(np.median(np.take_along_axis(walk, alike, 1))),
         heading_median_deg=float(np.rad2deg(np.median(np.take_along_axis(turn, alike, 1)))),
     )
+
+
+def _turns(queries: Float[np.ndarray, "queries 3"], poses: Float[np.ndarray, "views 3"]) -> Distances:
+    """Angles between headings the short way round, rad."""
+    return np.asarray(np.abs(np.angle(np.exp(1j * (queries[:, None, 2] - poses[:, 2])))))
 
 
 def _cumulative_light(

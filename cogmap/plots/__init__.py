@@ -2,21 +2,31 @@
 
 from cogmap.plots.barcodes import plot_barcodes
 from cogmap.plots.compass import plot_compass
+from cogmap.plots.confusion import plot_confusion
+from cogmap.plots.embedding import plot_embedding
 from cogmap.plots.heading_cells import plot_tuning_curves
+from cogmap.plots.likeness import plot_likeness
 from cogmap.plots.place_cells import plot_rate_maps
 from cogmap.plots.position import plot_position
+from cogmap.plots.quasi_metric import plot_quasi_metric
 from cogmap.plots.room import plot_room
 from cogmap.plots.sheet import plot_sheet
+from cogmap.plots.translation import plot_translation
 from cogmap.plots.views import plot_views
 from cogmap.plots.walk import plot_walk
 
 __all__ = [
     "plot_barcodes",
     "plot_compass",
+    "plot_confusion",
+    "plot_embedding",
+    "plot_likeness",
     "plot_position",
+    "plot_quasi_metric",
     "plot_rate_maps",
     "plot_room",
     "plot_sheet",
+    "plot_translation",
     "plot_tuning_curves",
     "plot_views",
     "plot_walk",

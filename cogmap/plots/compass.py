@@ -32,7 +32,7 @@ BIN = 0.2
 def plot_compass(
     headings_estimated: Float[np.ndarray, " views"],
     headings_true: Float[np.ndarray, " views"],
-    positions: Float[np.ndarray, "views 2"],
+    positions: Float[np.ndarray, "views 2"] | None = None,
 ) -> Figure:
     """Draw learnt against true heading, how large the errors are, and where in the room they come from.
 
@@ -47,7 +47,7 @@ def plot_compass(
     headings_true
         In rad.
     positions
-        Where the views were taken, m.
+        Where the views were taken, m; without them there is no map.
 
     Raises
     ------
@@ -56,13 +56,16 @@ def plot_compass(
     """
     check_array("headings_estimated", headings_estimated, (None,))
     check_array("headings_true", headings_true, (len(headings_estimated),))
-    check_array("positions", positions, (len(headings_estimated), 2))
+    if positions is not None:
+        check_array("positions", positions, (len(headings_estimated), 2))
     error = np.exp(1j * (headings_estimated.astype(float) - headings_true))
-    figure = new_figure(12.0, 3.7)
-    left, middle, right = figure.subplots(1, 3, width_ratios=[1, 1, 1.45])
+    widths = [1.0, 1.0] if positions is None else [1.0, 1.0, 1.45]
+    figure = new_figure(3.5 * sum(widths), 3.7)
+    left, middle, *right = figure.subplots(1, len(widths), width_ratios=widths)
     _draw_agreement(left, headings_estimated, headings_true)
     _draw_sizes(middle, np.rad2deg(np.abs(np.angle(error))))
-    _draw_room(right, error, positions)
+    if positions is not None:
+        _draw_room(right[0], error, positions)
     return figure
 
 

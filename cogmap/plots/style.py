@@ -76,6 +76,11 @@ def direction_scale() -> ScalarMappable:
     return ScalarMappable(Normalize(-180, 180), CYCLIC)
 
 
+def heading_bar(axes: Axes) -> None:
+    """Put a colour bar of headings in degrees to the right of axes."""
+    colour_bar(axes, direction_scale(), "heading (°)").set_ticks(QUARTERS.tolist())
+
+
 def new_figure(width: float, height: float) -> Figure:
     """Make an empty white figure of this size in inches, laid out so that nothing overlaps."""
     return Figure(figsize=(width, height), dpi=DPI, facecolor="white", layout="constrained")

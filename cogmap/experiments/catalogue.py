@@ -1,0 +1,86 @@
+"""Which experiments there are, and how to run one by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import nullcontext
+from pathlib import Path
+from typing import NamedTuple
+
+from arena import Arena
+from cogmap.errors import CogmapError
+from cogmap.experiments.brownian import brownian
+from cogmap.experiments.cyclic import cyclic
+from cogmap.experiments.distinguishability import distinguishability
+from cogmap.experiments.outputs import result_folder
+from cogmap.experiments.result import Result
+from cogmap.experiments.rotation import rotation
+from cogmap.experiments.setting import Setting
+from cogmap.experiments.similarity import similarity
+from cogmap.inputs import checked_count
+
+FEWEST = 200
+"""Views that every experiment can do with, if not well."""
+
+
+class Experiment(NamedTuple):
+    """What is done, and where and how much of it unless told."""
+
+    conduct: Callable[[Setting], Result]
+    room: str
+    views: int
+
+
+EXPERIMENTS = {
+    "rotation": Experiment(rotation, "furnished", 5_000),
+    "cyclic": Experiment(cyclic, "furnished", 4_000),
+    "brownian": Experiment(brownian, "furnished", 17_000),
+    "similarity": Experiment(similarity, "furnished", 5_000),
+    "distinguishability": Experiment(distinguishability, "white_rectangle", 17_000),
+}
+
+
+def experiment(
+    name: str,
+    out: Path | None = None,
+    *,
+    room: Arena | None = None,
+    views: int | None = None,
+    seed: int = 0,
+    progress: bool = False,
+) -> Result:
+    """Run an experiment by its name.
+
+    Parameters
+    ----------
+    name
+        One of `EXPERIMENTS`.
+    out
+        Folder for `metrics.json`, figures and the data behind them; an earlier result there is replaced at
+        the end. None writes nothing.
+    room
+        Where; the room that the experiment was made for when None.
+    views
+        To learn from; as many as the figures of the paper need when None.
+    seed
+        Of walks, noise and all that is drawn.
+    progress
+        Whether to show progress on stderr.
+
+    Raises
+    ------
+    ArenaError, CogmapError
+        For an unknown name, a room or counts that cannot work, a folder that holds something else.
+    """
+    if name not in EXPERIMENTS:
+        raise CogmapError(f"there is no experiment {name!r}; choose one of {', '.join(EXPERIMENTS)}")
+    chosen = EXPERIMENTS[name]
+    views = chosen.views if views is None else checked_count("views", views, FEWEST)
+    setting = Setting(room or Arena.load(chosen.room), views, seed, progress)
+    with nullcontext() if out is None else result_folder(out) as folder:
+        found = chosen.conduct(setting)
+        about = {"experiment": name, "arena": setting.room.name, "views": views, "seed": seed}
+        result = Result({**about, **found.metrics}, found.tables, found.figures)
+        if folder is not None:
+            result.write(folder)
+    return result

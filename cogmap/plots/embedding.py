@@ -1,0 +1,80 @@
+"""Views as points of a manifold."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.collections import PathCollection
+from matplotlib.figure import Figure
+
+from cogmap.cells.checks import check_array
+from cogmap.errors import CogmapError
+from cogmap.plots.style import INK, SMALL, TINY, colour_bar, direction_colours, heading_bar, new_figure, tidy
+
+POINTS = 6000
+"""More would hide each other."""
+SIZE = 3.0
+
+
+def plot_embedding(
+    embedding: Float[np.ndarray, "views components"],
+    headings: Float[np.ndarray, "views"],
+    others: Mapping[str, Float[np.ndarray, "views"]] | None = None,
+) -> Figure:
+    """Draw two or three coordinates of the views, once coloured by heading and once by each of the others.
+
+    Coordinates have the unit of the metric that they were found in, no unit for words. At most 6,000 views
+    are drawn, evenly chosen.
+
+    Parameters
+    ----------
+    embedding
+        Coordinates.
+    headings
+        rad.
+    others
+        What else to colour by, under a name with its unit.
+
+    Raises
+    ------
+    CogmapError
+        For values that are not finite, shapes that do not fit, other than two or three coordinates.
+    """
+    check_array("embedding", embedding, (None, None))
+    check_array("headings", headings, (len(embedding),))
+    components = embedding.shape[1]
+    if components not in {2, 3}:
+        raise CogmapError(f"there are {components} coordinates; choose two or three to draw")
+    others = others or {}
+    for name, values in others.items():
+        check_array(name, values, (len(embedding),))
+    chosen = np.linspace(0, len(embedding) - 1, min(len(embedding), POINTS)).astype(int)
+    figure = new_figure(5.2 * (1 + len(others)), 4.6)
+    panels = figure.subplots(
+        1, 1 + len(others), squeeze=False, subplot_kw={"projection": "3d"} if components == 3 else {}
+    )[0]
+    points = embedding[chosen].T
+    _draw(panels[0], points, direction_colours(headings[chosen]))
+    heading_bar(panels[0])
+    for axes, (name, values) in zip(panels[1:], others.items(), strict=True):
+        drawn = _draw(axes, points, values[chosen])
+        colour_bar(axes, drawn, name)
+    figure.suptitle(f"{len(embedding):,} views on their manifold", fontsize=SMALL, color=INK)
+    return figure
+
+
+def _draw(axes: Any, points: np.ndarray, colours: np.ndarray) -> PathCollection:
+    """Scatter points in a plane or, where the axes have three dimensions, in space."""
+    tidy(axes, x="coordinate 1 (no unit)", y="coordinate 2 (no unit)")
+    if len(points) == 3:
+        axes.set_zlabel("coordinate 3 (no unit)", fontsize=SMALL, color=INK)
+        axes.tick_params(axis="z", labelsize=TINY, colors=INK)
+        axes.set_box_aspect(np.ptp(points, axis=1))
+        axes.view_init(elev=28, azim=-60)
+    else:
+        axes.set_aspect("equal")
+    drawn: PathCollection = axes.scatter(*points, s=SIZE, c=colours, cmap="viridis", linewidths=0)
+    return drawn
