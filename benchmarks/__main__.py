@@ -10,13 +10,16 @@ import sys
 
 from benchmarks.exploring import exploring
 from benchmarks.learning import learning
+from benchmarks.manifold import manifold
 from benchmarks.rendering import rendering
 from benchmarks.stepping import stepping
 from benchmarks.timing import Figures
 from benchmarks.walking import walking
 from cogmap.tables import as_table
 
-SUBJECTS = {subject.__name__: subject for subject in (rendering, walking, exploring, stepping, learning)}
+SUBJECTS = {
+    subject.__name__: subject for subject in (rendering, walking, exploring, stepping, learning, manifold)
+}
 
 
 def machine() -> Figures:

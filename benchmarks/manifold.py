@@ -1,6 +1,5 @@
 """Speed and memory of the manifold: bag of words against SIFT itself, landmark Isomap against Isomap."""
 
-import argparse
 import json
 import subprocess
 import sys
@@ -16,9 +15,11 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
 from arena import Arena, Brownian, Camera, explore
+from benchmarks.timing import Figures
 from cogmap.manifold import BagOfWords, neighbour_graph
 from cogmap.threads import one_thread
 
+VIEWS = 17_000
 TIMED = 500
 """Views on which SIFT alone is timed, spread over all."""
 SOURCES = 300
@@ -53,9 +54,9 @@ MODELS = {
 }
 
 
-def bag_of_words(views: np.ndarray) -> tuple[dict[str, float], sp.csr_array]:
+def bag_of_words(views: np.ndarray) -> tuple[Figures, sp.csr_array]:
     """Time to learn and give the words of views, over that of SIFT on one thread divided by the cores."""
-    some = np.asarray(views)[:: max(1, len(views) // TIMED)]
+    some = views[:: max(1, len(views) // TIMED)]
     sift = cv2.SIFT_create()
 
     def alone() -> float:
@@ -78,7 +79,7 @@ def bag_of_words(views: np.ndarray) -> tuple[dict[str, float], sp.csr_array]:
     }, words
 
 
-def landmark_isomap(words: sp.csr_array) -> dict[str, float]:
+def landmark_isomap(words: sp.csr_array) -> Figures:
     """Speed, memory and geodesic correlation of landmark Isomap beside those of scikit-learn's Isomap."""
     graph = neighbour_graph(words, metric="cosine")
     sources = np.random.default_rng(0).choice(len(words.indptr) - 1, SOURCES, replace=False)
@@ -104,19 +105,8 @@ def landmark_isomap(words: sp.csr_array) -> dict[str, float]:
     }
 
 
-def measure(views: int) -> dict[str, float]:
-    """Measure on so many views of a walk through the furnished room."""
-    walk = explore(Arena.load("furnished"), Brownian(), Camera.perspective(), views=views)
-    figures, words = bag_of_words(walk.views)
-    return {"views": views, **figures, **landmark_isomap(words)}
-
-
-def main() -> None:
-    """Print the figures as JSON."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.manifold", description=__doc__)
-    parser.add_argument("--views", type=int, default=17_000)
-    sys.stdout.write(json.dumps(measure(parser.parse_args().views), indent=2) + "\n")
-
-
-if __name__ == "__main__":
-    main()
+def manifold() -> Figures:
+    """Measure on the views of a walk through the furnished room."""
+    walk = explore(Arena.load("furnished"), Brownian(), Camera.perspective(), views=VIEWS)
+    figures, words = bag_of_words(np.asarray(walk.views))
+    return {**figures, **landmark_isomap(words)}

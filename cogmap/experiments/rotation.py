@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 from jaxtyping import Float
+from sklearn.exceptions import ConvergenceWarning
 from sklearn.neural_network import MLPRegressor
-from sklearn.pipeline import make_pipeline
+from sklearn.pipeline import Pipeline, make_pipeline
 from sklearn.preprocessing import StandardScaler
 
 from arena import Camera, Rotation
@@ -91,11 +93,13 @@ def predict_headings(
     training, validation, _ = np.split(chosen, ends)
     target = np.column_stack([np.cos(headings), np.sin(headings)])
 
-    def errors(network: MLPRegressor, views: np.ndarray) -> Float[np.ndarray, "_"]:
+    def errors(network: Pipeline, views: np.ndarray) -> Float[np.ndarray, "_"]:
         cosine, sine = network.predict(coordinates[views]).T
         return heading_errors(np.arctan2(sine, cosine), headings[views], HeadingFrame(0.0, mirror=False))
 
-    with one_thread():
+    with one_thread(), warnings.catch_warnings():
+        # A number of steps is as good an end as any: the validation views judge.
+        warnings.simplefilter("ignore", ConvergenceWarning)
         networks = [
             make_pipeline(
                 StandardScaler(),

@@ -76,5 +76,6 @@ def _draw(axes: Any, points: np.ndarray, colours: np.ndarray) -> PathCollection:
         axes.view_init(elev=28, azim=-60)
     else:
         axes.set_aspect("equal")
-    drawn: PathCollection = axes.scatter(*points, s=SIZE, c=colours, cmap="viridis", linewidths=0)
+    drawn: PathCollection = axes.scatter(*points, s=SIZE, c=colours, linewidths=0)
+    drawn.set_cmap("viridis")
     return drawn

@@ -1,0 +1,71 @@
+import json
+from pathlib import Path
+
+import matplotlib.image
+import numpy as np
+import pandas as pd
+import pytest
+
+from arena import Arena
+from cogmap import CogmapError
+from cogmap.experiments.catalogue import EXPERIMENTS, experiment
+
+VIEWS = {"rotation": 300, "cyclic": 300, "brownian": 300, "similarity": 200, "distinguishability": 300}
+KEYS = {
+    "rotation": {"test_correlation", "median_error_deg", "betti", "dimension", "geodesic_rank_correlation"},
+    "cyclic": {"heading_resultant", "translation_r2", "betti", "dimension"},
+    "brownian": {"position_r2", "heading_resultant", "betti", "dimension"},
+    "similarity": {"euclidean", "bag_of_words", "earth_mover"},
+    "distinguishability": {"confusion_white", "confusion_blue_wall", "betti_white", "betti_blue_wall"},
+}
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> None:
+    out = tmp_path / name
+    result = experiment(name, out, views=VIEWS[name], seed=1)
+    assert result.metrics.keys() >= {"experiment", "arena", "views", "seed"} | KEYS[name]
+    assert result.metrics["arena"] == EXPERIMENTS[name].room
+    assert json.loads((out / "metrics.json").read_text(encoding="utf-8")) == result.metrics
+    assert {file.stem for file in out.glob("*.png")} == result.figures.keys()
+    assert {file.stem for file in out.glob("*.parquet")} == result.tables.keys()
+    for figure in result.figures:
+        assert matplotlib.image.imread(out / f"{figure}.png").std() > 0.01
+    for table, rows in result.tables.items():
+        pd.testing.assert_frame_equal(pd.read_parquet(out / f"{table}.parquet"), rows.reset_index(drop=True))
+
+
+def test_the_white_room_is_confused_and_the_blue_wall_is_not() -> None:
+    metrics = experiment("distinguishability", views=2000).metrics
+    assert 0.4 < metrics["confusion_white"] < 0.6
+    assert metrics["confusion_blue_wall"] < 0.02
+
+
+def test_the_same_seed_gives_the_same_tables() -> None:
+    one, same = (experiment("rotation", views=200, seed=2) for _ in range(2))
+    assert one.metrics == same.metrics
+    for name, table in one.tables.items():
+        np.testing.assert_array_equal(table.to_numpy(), same.tables[name].to_numpy())
+
+
+def test_a_room_can_be_chosen() -> None:
+    assert experiment("rotation", views=200, room=Arena.load("open_field")).metrics["arena"] == "open_field"
+
+
+@pytest.mark.parametrize(
+    ("name", "views", "says"),
+    [("levitation", None, "choose one of rotation"), ("rotation", 10, "views is 10")],
+)
+def test_what_cannot_be_done_is_refused_and_nothing_is_written(
+    name: str, views: int | None, says: str, tmp_path: Path
+) -> None:
+    with pytest.raises(CogmapError, match=says):
+        experiment(name, tmp_path / "out", views=views)
+    assert not list(tmp_path.iterdir())
+
+
+def test_another_folder_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "thesis.txt").write_text("years of work", encoding="utf-8")
+    with pytest.raises(CogmapError, match="not the result of an experiment"):
+        experiment("rotation", tmp_path, views=200)
+    assert [file.name for file in tmp_path.iterdir()] == ["thesis.txt"]
