@@ -17,6 +17,8 @@ from cogmap.plots.style import INK, SMALL, TINY, colour_bar, direction_colours, 
 POINTS = 6000
 """More would hide each other."""
 SIZE = 3.0
+PADS = {2: 0.02, 3: 0.14}
+"""Room between axes and colour bar, as a share of the axes: a third axis has its label there."""
 
 
 def plot_embedding(
@@ -58,10 +60,10 @@ def plot_embedding(
     )[0]
     points = embedding[chosen].T
     _draw(panels[0], points, direction_colours(headings[chosen]))
-    heading_bar(panels[0])
+    heading_bar(panels[0], pad=PADS[components])
     for axes, (name, values) in zip(panels[1:], others.items(), strict=True):
         drawn = _draw(axes, points, values[chosen])
-        colour_bar(axes, drawn, name)
+        colour_bar(axes, drawn, name, pad=PADS[components])
     figure.suptitle(f"{len(embedding):,} views on their manifold", fontsize=SMALL, color=INK)
     return figure
 

@@ -9,30 +9,65 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, NullLocator, StrMethodFormatter
 
-from cogmap.plots.style import BAD, colour_bar, new_figure, tidy, tidy_room
+from cogmap.plots.style import (
+    BAD,
+    QUARTERS,
+    SOFT,
+    colour_bar,
+    direction_colours,
+    new_figure,
+    tidy,
+    tidy_room,
+)
 
 BINS = 60
+ROOMY = 0.5
+"""Least extent along x and y (m) of places that are worth a map."""
+DISTORTION = "geodesic / motion, over that of all pairs"
+TICKS = [0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 2]
 BANDS = 25
 """Of motion distance, in each of which the median geodesic is taken."""
 
 
 def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
-    """Draw image geodesics against motion distances, and where in the room they are stretched.
+    """Draw image geodesics against motion distances, and where and in which direction they are stretched.
+
+    There is a map of the room when the views come from all over it.
 
     Parameters
     ----------
     pairs
         `motion_m` and `geodesic` (no unit), a row a pair.
     places
-        `x_m`, `y_m` and `distortion`, a row a view: 2 where geodesics are twice as long for the distance as
-        they are on the whole.
+        `x_m`, `y_m`, `heading_rad` and `distortion`, a row a view: 2 where geodesics are twice as long for the
+        distance as they are on the whole.
     """
-    figure = new_figure(11.0, 4.2)
-    left, right = figure.subplots(1, 2, width_ratios=[1, 1.2])
+    roomy = bool((places[["x_m", "y_m"]].max() - places[["x_m", "y_m"]].min() > ROOMY).all())
+    widths = [1.0, 0.9, 1.2] if roomy else [1.0, 0.9]
+    figure = new_figure(5.0 * sum(widths), 4.2)
+    left, middle, *right = figure.subplots(1, len(widths), width_ratios=widths)
     _draw_pairs(left, pairs["motion_m"].to_numpy(), pairs["geodesic"].to_numpy())
-    tidy_room(right, title="distortion by place")
+    _draw_headings(middle, places)
+    if roomy:
+        _draw_room(right[0], places)
+    return figure
+
+
+def _draw_headings(axes: Axes, places: pd.DataFrame) -> None:
+    tidy(axes, x="heading (°)", y=DISTORTION, title="distortion by heading")
+    headings = places["heading_rad"].to_numpy()
+    axes.scatter(np.rad2deg(headings), places["distortion"], s=9, c=direction_colours(headings), linewidths=0)
+    axes.axhline(1, color=SOFT, linewidth=0.6)
+    axes.set_yscale("log", base=2)
+    axes.yaxis.set_major_locator(FixedLocator(TICKS))
+    axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.set(xlim=(-185, 185), xticks=QUARTERS)
+
+
+def _draw_room(axes: Axes, places: pd.DataFrame) -> None:
+    tidy_room(axes, title="distortion by place")
     farthest = max(float(np.abs(np.log2(places["distortion"])).quantile(0.98)), 0.05)
-    drawn = right.scatter(
+    drawn = axes.scatter(
         places["x_m"],
         places["y_m"],
         c=places["distortion"],
@@ -41,12 +76,11 @@ def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
         norm=LogNorm(2**-farthest, 2**farthest),
         linewidths=0,
     )
-    right.margins(0.08)
-    bar = colour_bar(right, drawn, "geodesic / motion, over that of all pairs", extend="both")
-    bar.ax.yaxis.set_major_locator(FixedLocator([0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 2]))
+    axes.margins(0.08)
+    bar = colour_bar(axes, drawn, DISTORTION, extend="both")
+    bar.ax.yaxis.set_major_locator(FixedLocator(TICKS))
     bar.ax.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     bar.ax.yaxis.set_minor_locator(NullLocator())
-    return figure
 
 
 def _draw_pairs(axes: Axes, motion: np.ndarray, geodesic: np.ndarray) -> None:

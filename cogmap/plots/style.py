@@ -76,9 +76,9 @@ def direction_scale() -> ScalarMappable:
     return ScalarMappable(Normalize(-180, 180), CYCLIC)
 
 
-def heading_bar(axes: Axes) -> None:
+def heading_bar(axes: Axes, *, pad: float = 0.02) -> None:
     """Put a colour bar of headings in degrees to the right of axes."""
-    colour_bar(axes, direction_scale(), "heading (°)").set_ticks(QUARTERS.tolist())
+    colour_bar(axes, direction_scale(), "heading (°)", pad=pad).set_ticks(QUARTERS.tolist())
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -118,11 +118,16 @@ def tidy_legend(axes: Axes, *, title: str = "", loc: Literal["best", "lower righ
 
 
 def colour_bar(
-    axes: Axes, scale: ScalarMappable, label: str, *, extend: Literal["neither", "max", "both"] = "neither"
+    axes: Axes,
+    scale: ScalarMappable,
+    label: str,
+    *,
+    extend: Literal["neither", "max", "both"] = "neither",
+    pad: float = 0.02,
 ) -> Colorbar:
     """Put a labelled colour bar to the right of axes; it extends where colours hold all that is beyond."""
     figure = cast("Figure", axes.get_figure(root=True))
-    bar = figure.colorbar(scale, ax=axes, shrink=0.85, aspect=30, pad=0.02, extend=extend)
+    bar = figure.colorbar(scale, ax=axes, shrink=0.85, aspect=30, pad=pad, extend=extend)
     bar.set_label(label, fontsize=SMALL, color=INK)
     bar.ax.tick_params(labelsize=TINY, colors=INK, length=2.5, width=0.6)
     bar.outline.set_visible(False)
