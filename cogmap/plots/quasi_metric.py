@@ -39,8 +39,8 @@ def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
     pairs
         `motion_m` and `geodesic` (no unit), a row a pair.
     places
-        `x_m`, `y_m`, `heading_rad` and `distortion`, a row a view: 2 where geodesics are twice as long for the
-        distance as they are on the whole.
+        `x_m`, `y_m`, `heading_rad` and `distortion`, a row a view: 2 where geodesics are twice as long for
+        the distance as they are on the whole.
     """
     roomy = bool((places[["x_m", "y_m"]].max() - places[["x_m", "y_m"]].min() > ROOMY).all())
     widths = [1.0, 0.9, 1.2] if roomy else [1.0, 0.9]
