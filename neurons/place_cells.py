@@ -12,6 +12,8 @@ WINNERS = 6
 """Units that learn from one smell; it sets how much neighbouring fields overlap."""
 FLATNESS = 0.05
 """Smallest width of a tuning in any direction, as a fraction of its mean variance."""
+FINEST = 1e-9
+"""Least mean variance of a tuning: a unit that has learnt a single smell has none of its own."""
 FAINTEST = -50.0
 """Least exponent of a tuning, 4e-21 Hz: exp is twenty times slower where floats become subnormal."""
 BLOCK = 256
@@ -76,7 +78,7 @@ class PlaceCells(nn.Module):
         With P = Σ⁻¹ the exponent is −½ P · (o oᵀ) + (P c) · o − ½ cᵀ P c, one matrix product on (o oᵀ, o).
         """
         odorants = self.centres.shape[1]
-        mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1)
+        mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1).clamp(min=FINEST)
         floor = FLATNESS * mean[:, None, None] * torch.eye(odorants)
         # In double precision, as the three terms are large and cancel.
         precision = torch.linalg.inv((self.covariances + floor).double())

@@ -12,6 +12,7 @@ from cogmap.errors import CogmapError
 from cogmap.experiments.brownian import brownian
 from cogmap.experiments.cyclic import cyclic
 from cogmap.experiments.distinguishability import distinguishability
+from cogmap.experiments.fusion import fusion
 from cogmap.experiments.outputs import result_folder
 from cogmap.experiments.result import Result
 from cogmap.experiments.rotation import rotation
@@ -37,6 +38,7 @@ EXPERIMENTS = {
     "brownian": Experiment(brownian, "furnished", 17_000),
     "similarity": Experiment(similarity, "furnished", 5_000),
     "distinguishability": Experiment(distinguishability, "white_rectangle", 17_000),
+    "fusion": Experiment(fusion, "furnished", 17_000),
 }
 
 

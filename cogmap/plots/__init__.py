@@ -1,9 +1,11 @@
 """The figures, from results only: arrays in, a matplotlib Figure out."""
 
 from cogmap.plots.barcodes import plot_barcodes
+from cogmap.plots.cell_types import plot_cell_types
 from cogmap.plots.compass import plot_compass
 from cogmap.plots.confusion import plot_confusion
 from cogmap.plots.embedding import plot_embedding
+from cogmap.plots.examples import Tuning, plot_examples
 from cogmap.plots.heading_cells import plot_tuning_curves
 from cogmap.plots.likeness import plot_likeness
 from cogmap.plots.place_cells import plot_rate_maps
@@ -16,10 +18,13 @@ from cogmap.plots.views import plot_views
 from cogmap.plots.walk import plot_walk
 
 __all__ = [
+    "Tuning",
     "plot_barcodes",
+    "plot_cell_types",
     "plot_compass",
     "plot_confusion",
     "plot_embedding",
+    "plot_examples",
     "plot_likeness",
     "plot_position",
     "plot_quasi_metric",

@@ -10,13 +10,21 @@ from arena import Arena
 from cogmap import CogmapError
 from cogmap.experiments.catalogue import EXPERIMENTS, experiment
 
-VIEWS = {"rotation": 300, "cyclic": 300, "brownian": 300, "similarity": 200, "distinguishability": 300}
+VIEWS = {
+    "rotation": 300,
+    "cyclic": 300,
+    "brownian": 300,
+    "similarity": 200,
+    "distinguishability": 300,
+    "fusion": 300,
+}
 KEYS = {
     "rotation": {"test_correlation", "median_error_deg", "betti", "dimension", "geodesic_rank_correlation"},
     "cyclic": {"heading_resultant", "translation_r2", "betti", "dimension"},
     "brownian": {"position_r2", "heading_resultant", "betti", "dimension"},
     "similarity": {"euclidean", "bag_of_words", "earth_mover"},
     "distinguishability": {"confusion_white", "confusion_blue_wall", "betti_white", "betti_blue_wall"},
+    "fusion": {"vision_only", "olfaction_only", "fused"},
 }
 
 
