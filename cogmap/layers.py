@@ -117,7 +117,7 @@ class Layers(nn.Module):
                 self.place.compete(odours, memory=float(self.epoch))
                 self.heading.compete(headings, memory=float(self.epoch))
             else:
-                self.place.afferents.partial_fit(excited, self.place.tuning(odours))
+                self.place.afferents.partial_fit(excited, self.place.instruct(excited, odours))
                 self.heading.afferents.partial_fit(excited, self.heading.tuning(headings))
 
     def complain(self) -> str:
@@ -153,6 +153,9 @@ class Layers(nn.Module):
                 self.recall.spacing = Atlas.of(self.charts.centres).spacing
             elif entered == "cells":
                 self._orient()
+            elif entered == "afferents":
+                edges = Atlas.of(self.charts.centres).edges
+                self.place.disambiguate(self.recall.intercepts, self.recall.phases, edges)
 
     def _orient(self) -> None:
         atlas = Atlas.of(self.charts.centres)

@@ -1,10 +1,12 @@
 """Place cells: units that compete for recalled smells."""
 
 import torch
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from neurons.afferents import Afferents
+from neurons.ambiguity import branches
+from neurons.recall import Excited
 
 PEAK = 20.0
 """Rate of a cell at the middle of its field, Hz."""
@@ -28,6 +30,9 @@ class PlaceCells(nn.Module):
 
         r_i(o) = 20 Hz · exp(−½ (o − c_i)ᵀ Σ_i⁻¹ (o − c_i)).
 
+    With few odours a smell can mean several places. `disambiguate` makes a unit keep to one of them in
+    sight, by the charts that it listens to; in the dark it remains ambiguous.
+
     Parameters
     ----------
     cells, charts, odorants
@@ -38,6 +43,7 @@ class PlaceCells(nn.Module):
     covariances: Tensor
     mass: Tensor
     placed: Tensor
+    branches: Tensor
 
     def __init__(self, cells: int, charts: int, odorants: int) -> None:
         super().__init__()
@@ -45,6 +51,7 @@ class PlaceCells(nn.Module):
         self.register_buffer("covariances", torch.eye(odorants).repeat(cells, 1, 1))
         self.register_buffer("mass", torch.zeros(cells))
         self.register_buffer("placed", torch.zeros((), dtype=torch.int64))
+        self.register_buffer("branches", torch.ones(charts, cells, dtype=torch.bool))
         self.afferents = Afferents(charts, cells)
 
     def compete(self, log_odours: Float[Tensor, "views odorants"], *, memory: float) -> None:
@@ -71,6 +78,22 @@ class PlaceCells(nn.Module):
         self.covariances += rate[:, None, None] * (drawn - fed[:, None, None] * self.covariances)
         shift = torch.zeros_like(self.centres).index_add_(0, flat, deviation.flatten(0, 1))
         self.centres += rate[:, None] * shift
+
+    def disambiguate(
+        self,
+        smells: Float[Tensor, "charts odorants"],
+        phases: Float[Tensor, "charts"],
+        edges: Int[Tensor, "edges 2"],
+    ) -> None:
+        """Let each unit keep to one place, given the charts' log odours, headings (rad) and overlaps."""
+        self.branches = branches(self.tuning(smells), phases, edges)
+
+    def instruct(
+        self, excited: Excited, log_odours: Float[Tensor, "views odorants"]
+    ) -> Float[Tensor, "views cells"]:
+        """Rates in Hz that a smell demands as far as the excited charts are those of the unit's place."""
+        here = torch.einsum("nw,nwc->nc", excited.weight, self.branches[excited.chart].float())
+        return here * self.tuning(log_odours)
 
     def tuning(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
         """Rates in Hz that smell alone demands.

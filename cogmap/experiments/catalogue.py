@@ -18,6 +18,8 @@ from cogmap.experiments.result import Result
 from cogmap.experiments.rotation import rotation
 from cogmap.experiments.setting import Setting
 from cogmap.experiments.similarity import similarity
+from cogmap.experiments.sources import sources
+from cogmap.experiments.walks import walks
 from cogmap.inputs import checked_count
 
 FEWEST = 200
@@ -39,6 +41,8 @@ EXPERIMENTS = {
     "similarity": Experiment(similarity, "furnished", 5_000),
     "distinguishability": Experiment(distinguishability, "white_rectangle", 17_000),
     "fusion": Experiment(fusion, "furnished", 17_000),
+    "walks": Experiment(walks, "furnished", 17_000),
+    "sources": Experiment(sources, "furnished", 17_000),
 }
 
 

@@ -13,6 +13,7 @@ from cogmap.plots.position import plot_position
 from cogmap.plots.quasi_metric import plot_quasi_metric
 from cogmap.plots.room import plot_room
 from cogmap.plots.sheet import plot_sheet
+from cogmap.plots.sources import plot_sources
 from cogmap.plots.translation import plot_translation
 from cogmap.plots.views import plot_views
 from cogmap.plots.walk import plot_walk
@@ -31,6 +32,7 @@ __all__ = [
     "plot_rate_maps",
     "plot_room",
     "plot_sheet",
+    "plot_sources",
     "plot_translation",
     "plot_tuning_curves",
     "plot_views",

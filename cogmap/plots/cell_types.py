@@ -40,7 +40,7 @@ def plot_cell_types(cells: pd.DataFrame) -> Figure:
     names = list(dict.fromkeys(cells["population"]))
     if not names:
         raise CogmapError("no cells to draw; give a table with at least one")
-    most = 1.08 * float(cells["spatial_information"].max())
+    most = max(1.08 * float(cells["spatial_information"].fillna(0.0).max()), 1.0)
     figure = new_figure(PANEL * max(len(names), 2) + 0.6, 2 * PANEL + 0.4)
     panels = figure.subplots(2, len(names), squeeze=False, sharey=True)
     for column, name in zip(panels.T, names, strict=True):
@@ -48,11 +48,11 @@ def plot_cell_types(cells: pd.DataFrame) -> Figure:
             mine = cells[cells["population"] == name]
             passing = mine[f"{kind}_passing"]
             tidy(axes, x=label)
-            axes.set_title(f"{name}: {passing.mean():.0%} {kind} cells", fontsize=SMALL - 1, color=INK)
+            axes.set_title(f"{name}\n{passing.mean():.0%} {kind} cells", fontsize=SMALL - 1, color=INK)
             _mark_criterion(axes, kind, most)
             colours = passing.map({True: GOOD, False: BAD})
             axes.scatter(mine[key], mine["spatial_information"], s=7, c=colours, alpha=0.7, linewidths=0)
-            axes.set(xlim=(-0.02, 1.02), ylim=(0, max(most, 1.0)))
+            axes.set(xlim=(-0.02, 1.02), ylim=(0, most))
     for axes in panels[:, 0]:
         axes.set_ylabel("spatial information (bit/spike)", fontsize=SMALL, color=INK)
     return figure
@@ -61,7 +61,7 @@ def plot_cell_types(cells: pd.DataFrame) -> Figure:
 def _mark_criterion(axes: Axes, kind: str, most: float) -> None:
     """Shade where a cell of this kind must lie."""
     left, right, low, high = (
-        (-0.02, MOST_DIRECTION, LEAST_INFORMATION, max(most, 1.0))
+        (-0.02, MOST_DIRECTION, LEAST_INFORMATION, most)
         if kind == "place"
         else (LEAST_VECTOR, 1.02, 0.0, MOST_INFORMATION)
     )

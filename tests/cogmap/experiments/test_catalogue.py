@@ -17,6 +17,7 @@ VIEWS = {
     "similarity": 200,
     "distinguishability": 300,
     "fusion": 300,
+    "sources": 200,
 }
 KEYS = {
     "rotation": {"test_correlation", "median_error_deg", "betti", "dimension", "geodesic_rank_correlation"},
@@ -25,6 +26,7 @@ KEYS = {
     "similarity": {"euclidean", "bag_of_words", "earth_mover"},
     "distinguishability": {"confusion_white", "confusion_blue_wall", "betti_white", "betti_blue_wall"},
     "fusion": {"vision_only", "olfaction_only", "fused"},
+    "sources": {"1_sources_0.1_noise", "4_sources_0.1_noise", "3_sources_0_noise", "3_sources_0.3_noise"},
 }
 
 

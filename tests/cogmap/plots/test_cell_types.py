@@ -38,8 +38,8 @@ def test_every_cell_is_where_its_statistics_say_in_its_colour(cells: pd.DataFram
         np.testing.assert_allclose(np.ma.compress_rows(drawn), expected[~np.isnan(expected).any(axis=1)])
         colours = [to_hex(colour) for colour in dots.get_facecolors()]
         assert colours == [GOOD if passes else BAD for passes in mine[f"{kind}_passing"]]
-    assert above[0].get_title() == "seeing: 50% place cells"
-    assert below[0].get_title() == "seeing: 33% heading cells"
+    assert above[0].get_title() == "seeing\n50% place cells"
+    assert below[0].get_title() == "seeing\n33% heading cells"
 
 
 def test_no_cells_are_refused(cells: pd.DataFrame) -> None:
