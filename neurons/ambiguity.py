@@ -35,7 +35,8 @@ def branches(
     rates
         Of each unit at the smell of each chart.
     phases
-        Headings of the charts, rad; NaN without a compass, when no unit is ambiguous for want of evidence.
+        Headings of the charts, rad; NaN without a compass, when every group that weighs enough is a place:
+        as on a path where nobody turns, and the two directions are two places.
     edges
         Overlapping charts.
     """
@@ -71,6 +72,8 @@ def _places(
     groups = [active[label == group] for group in np.flatnonzero(weight >= LIGHT * weight.max(initial=0.0))]
     while len(groups) > 1:
         turned = [abs(rate[group] @ heading[group]) / rate[group].sum() for group in groups]
+        if np.isnan(turned).any():
+            break
         part = int(np.argmax(turned))
         if turned[part] < TURNED:
             break

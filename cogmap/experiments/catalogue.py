@@ -10,7 +10,10 @@ from typing import NamedTuple
 from arena import Arena
 from cogmap.errors import CogmapError
 from cogmap.experiments.brownian import brownian
+from cogmap.experiments.cue_rotation import cue_rotation
 from cogmap.experiments.cyclic import cyclic
+from cogmap.experiments.darkness import darkness
+from cogmap.experiments.directionality import directionality
 from cogmap.experiments.distinguishability import distinguishability
 from cogmap.experiments.fusion import fusion
 from cogmap.experiments.outputs import result_folder
@@ -43,6 +46,9 @@ EXPERIMENTS = {
     "fusion": Experiment(fusion, "furnished", 17_000),
     "walks": Experiment(walks, "furnished", 17_000),
     "sources": Experiment(sources, "furnished", 17_000),
+    "darkness": Experiment(darkness, "furnished", 17_000),
+    "cue_rotation": Experiment(cue_rotation, "open_field", 17_000),
+    "directionality": Experiment(directionality, "furnished", 17_000),
 }
 
 

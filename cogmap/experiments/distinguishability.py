@@ -68,7 +68,7 @@ def _look(setting: Setting, room: Arena) -> _Seen:
     here = Setting(room, setting.views, setting.seed, setting.progress)
     walk = here.explore(Brownian(), strips)
     fresh = here.explore(Brownian(), strips, views=min(QUERIES, setting.views), fresh=True)
-    known, asked = _codes(np.asarray(walk.views), np.asarray(fresh.views), setting.seed)
+    known, asked = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), setting.seed)
     nearest = poses_of(walk)[nearest_points(known, 1, queries=asked).indices[:, 0]]
     poses = poses_of(fresh)
     x0, y0, x1, y1 = room.bounds
@@ -90,10 +90,10 @@ def _look(setting: Setting, room: Arena) -> _Seen:
     )
 
 
-def _codes(
+def retina_codes(
     known: np.ndarray, asked: np.ndarray, seed: int
 ) -> tuple[Float[np.ndarray, "views components"], Float[np.ndarray, "queries components"]]:
-    """Principal components of what the retina makes of strips."""
+    """Give the principal components, of the known views, of what the retina makes of strips."""
     retina = Retina(*known.shape[1:3])
     with one_thread():
         sensed = [

@@ -23,6 +23,7 @@ from cogmap.cells import (
     rate_maps,
     tuning_curves,
 )
+from cogmap.cells.ratios import ratio
 from cogmap.cognitive_map import BATCH, CognitiveMap
 from cogmap.layers import EPOCHS
 from cogmap.plots import Tuning
@@ -139,6 +140,17 @@ class Measured(NamedTuple):
             "heading_cells_passing": float(self.table["heading_passing"].mean()),
             **_median(self.table, "mean_vector_length", "drift_deg"),
         }
+
+
+def map_correlations(first: RateMaps, second: RateMaps) -> Float[np.ndarray, "cells"]:
+    """Correlate the maps of the same cells over the bins that both know; NaN where one is flat."""
+    both = first.visited & second.visited
+    one, other = (
+        maps.rates[:, both] - maps.rates[:, both].mean(axis=1, keepdims=True) for maps in (first, second)
+    )
+    return ratio(
+        (one * other).sum(axis=1), np.sqrt(np.square(one).sum(axis=1) * np.square(other).sum(axis=1))
+    )
 
 
 def as_one_table(populations: dict[str, Measured]) -> pd.DataFrame:

@@ -19,6 +19,8 @@ COUNT = 6
 """Cells of a population."""
 WIDTH = 1.7
 """Of a cell, in inches."""
+THINNEST = 0.25
+"""Height of a map over its width; that of a path is stretched to it."""
 
 
 class Tuning(NamedTuple):
@@ -42,7 +44,7 @@ def plot_examples(populations: Mapping[str, Tuning]) -> Figure:
     if not populations:
         raise CogmapError("no populations to draw; give the maps and curves of at least one")
     edges = next(iter(populations.values())).maps.edges
-    aspect = np.ptp(edges.y) / np.ptp(edges.x)
+    aspect = max(float(np.ptp(edges.y) / np.ptp(edges.x)), THINNEST)
     height = WIDTH * (aspect + 0.45) + 0.5
     figure = new_figure(COUNT * WIDTH + 0.7, height * len(populations))
     lines = figure.subfigures(len(populations), 1, squeeze=False, hspace=0.03)[:, 0]
@@ -64,7 +66,8 @@ def _draw_map(axes: Axes, maps: RateMaps, cell: int, *, first: bool) -> None:
     tidy(axes, x="x (m)" if first else "", y="y (m)" if first else "")
     axes.set_title(f"cell {cell}: {peak:.2g} Hz", fontsize=TINY, color=INK)
     axes.pcolormesh(*maps.edges, np.ma.masked_invalid(maps[cell] / peak), cmap=COLOURS, vmin=0, vmax=1)
-    axes.set_aspect("equal")
+    if np.ptp(maps.edges.y) > THINNEST * np.ptp(maps.edges.x):
+        axes.set_aspect("equal")
     axes.set_facecolor(ABSENT)
     if not first:
         axes.set(xticks=[], yticks=[])

@@ -50,6 +50,6 @@ def _draw_lines(axes: Axes, shown: pd.DataFrame, along: str, lines: dict[str, tu
         if key in shown:
             axes.plot(shown[along], factor * shown[key], "o-", color=colour, label=name, markersize=4)
     axes.set_xticks(shown[along].tolist())
-    axes.set_ylim(bottom=0)
+    axes.set_ylim(0, 1.08 * axes.get_ylim()[1])
     if axes.lines:
         tidy_legend(axes)

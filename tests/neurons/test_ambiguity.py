@@ -58,8 +58,16 @@ def test_headings_apart_at_one_place_are_not_two_places(charts: tuple[Tensor, Te
     assert branches(rates[:, None], heading, edges).all()
 
 
-def test_without_a_compass_or_a_rate_nothing_is_split(charts: tuple[Tensor, Tensor, Tensor]) -> None:
+def test_without_a_compass_two_headings_that_no_turn_joins_are_two_places(
+    charts: tuple[Tensor, Tensor, Tensor],
+) -> None:
     place, heading, edges = charts
-    both = torch.stack([bump(place, FIRST, SECOND), torch.zeros(len(place))], dim=1)
-    assert branches(both[:, 1:], heading, edges).all()
-    assert branches(both, torch.full_like(heading, torch.nan), edges).all()
+    ways = (heading.cos().abs() > 0.8) * bump(place, FIRST)
+    kept = branches(ways[:, None], torch.full_like(heading, torch.nan), edges)[:, 0]
+    ahead, back = (kept[(sign * heading.cos() > 0.8) & (ways > 0.3)].float().mean() for sign in (1, -1))
+    assert sorted([round(float(ahead)), round(float(back))]) == [0, 1]
+
+
+def test_silent_units_are_left_alone(charts: tuple[Tensor, Tensor, Tensor]) -> None:
+    place, heading, edges = charts
+    assert branches(torch.zeros(len(place), 2), heading, edges).all()
