@@ -16,6 +16,7 @@ from cogmap.experiments.darkness import darkness
 from cogmap.experiments.directionality import directionality
 from cogmap.experiments.distinguishability import distinguishability
 from cogmap.experiments.fusion import fusion
+from cogmap.experiments.goals import goals
 from cogmap.experiments.outputs import result_folder
 from cogmap.experiments.result import Result
 from cogmap.experiments.rotation import rotation
@@ -48,6 +49,7 @@ EXPERIMENTS = {
     "sources": Experiment(sources, "furnished", 17_000),
     "darkness": Experiment(darkness, "furnished", 17_000),
     "cue_rotation": Experiment(cue_rotation, "open_field", 17_000),
+    "goals": Experiment(goals, "furnished", 17_000),
     "directionality": Experiment(directionality, "furnished", 17_000),
 }
 

@@ -6,6 +6,7 @@ from cogmap.plots.compass import plot_compass
 from cogmap.plots.confusion import plot_confusion
 from cogmap.plots.embedding import plot_embedding
 from cogmap.plots.examples import Tuning, plot_examples
+from cogmap.plots.goals import plot_goals
 from cogmap.plots.heading_cells import plot_tuning_curves
 from cogmap.plots.likeness import plot_likeness
 from cogmap.plots.place_cells import plot_rate_maps
@@ -26,6 +27,7 @@ __all__ = [
     "plot_confusion",
     "plot_embedding",
     "plot_examples",
+    "plot_goals",
     "plot_likeness",
     "plot_position",
     "plot_quasi_metric",

@@ -18,6 +18,7 @@ VIEWS = {
     "distinguishability": 300,
     "fusion": 300,
     "sources": 200,
+    "goals": 600,
 }
 KEYS = {
     "rotation": {"test_correlation", "median_error_deg", "betti", "dimension", "geodesic_rank_correlation"},
@@ -27,6 +28,7 @@ KEYS = {
     "distinguishability": {"confusion_white", "confusion_blue_wall", "betti_white", "betti_blue_wall"},
     "fusion": {"vision_only", "olfaction_only", "fused"},
     "sources": {"1_sources_0.1_noise", "4_sources_0.1_noise", "3_sources_0_noise", "3_sources_0.3_noise"},
+    "goals": {"goals", "ring_betti", "place_cells_passing", "heading_cells_passing", "heading_median_deg"},
 }
 
 
