@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
+import scipy.sparse as sp
 from jaxtyping import Float
 
 from arena import Arena, Body, Brownian, Camera, Chemotaxis, Recording
@@ -23,8 +24,11 @@ ORIENTATIONS = 36
 """Cells, each a direction of the reference ring."""
 CONCENTRATION = 5.0
 """κ of the von Mises tuning of an orientation cell, that of the map's heading cells."""
-NEIGHBOURS = 15
-"""In the graph of the reference ring."""
+REACH = 0.125
+"""Nearest views that a view of the reference ring is joined to, as a share of the ring: those of one stay are
+far apart, those of several stays alike, and fewer would leave gaps."""
+LANDMARKS = 100, 50
+"""On which its shape is measured."""
 FEWEST = 100
 """Views of the walk to a goal at least."""
 PEAK = 20.0
@@ -68,12 +72,18 @@ def goals(setting: Setting) -> Result:
     views = pd.DataFrame(poses, columns=["x_m", "y_m", "heading_rad"]).assign(
         ring=ring, orientation_rad=poses[:, 2] + turn
     )
-    reference = codes[ring == order[0]]
+    shape = betti(
+        ring_graph(codes[ring == order[0]]),
+        "precomputed",
+        max_dimension=1,
+        landmarks=LANDMARKS,
+        seed=setting.seed,
+    )
     return Result(
         metrics={
             "goals": len(visits),
             "views_at_goals": len(seen),
-            "ring_betti": list(betti(reference, max_dimension=1, seed=setting.seed).numbers),
+            "ring_betti": list(shape.numbers),
             "ring_spread_m": float(np.median(np.linalg.norm(poses[:, :2] - centres[ring], axis=1))),
             **cells["rings, place"].place_figures,
             **cells["rings, heading"].heading_figures,
@@ -110,6 +120,11 @@ def ring_distances(
     return np.stack(found, axis=1)
 
 
+def ring_graph(codes: Float[np.ndarray, "views components"]) -> sp.csr_array:
+    """Join the views of a ring with their nearest."""
+    return neighbour_graph(codes, max(1, round(REACH * len(codes))))
+
+
 def spread_orientation(
     codes: Float[np.ndarray, "seen components"], ring: np.ndarray, order: np.ndarray
 ) -> Float[np.ndarray, "seen"]:
@@ -120,8 +135,7 @@ def spread_orientation(
     """
     orientation = np.full(len(codes), np.nan)
     first = ring == order[0]
-    graph = neighbour_graph(codes[first], min(NEIGHBOURS, int(first.sum()) - 1))
-    orientation[first] = circular_coordinate(graph).phase
+    orientation[first] = circular_coordinate(ring_graph(codes[first])).phase
     known = first & np.isfinite(orientation)
     for one in order[1:]:
         mine = ring == one

@@ -14,7 +14,7 @@ def test_place_cells_are_directional_on_a_path_and_not_in_the_open() -> None:
 
 
 def test_even_a_small_one_tells_path_from_field() -> None:
-    result = experiment("directionality", views=800)
+    result = experiment("directionality", views=1500)
     metrics = result.metrics
     assert metrics["open_field"]["fused"]["in_field_direction_vector"] < 0.4
     assert metrics["corridor"]["fused"]["directional"] > metrics["open_field"]["fused"]["directional"] + 0.4
