@@ -52,6 +52,7 @@ def brownian(setting: Setting) -> Result:
     turn = heading_errors(read.headings, truth[:, 2], HeadingFrame(0.0, mirror=False))
     near = quasi_metric(found.graph, poses, setting.seed)
     shape = found.metrics(poses)
+    places = {"x (m)": poses[:, 0], "y (m)": poses[:, 1]}
     return Result(
         metrics={
             "position_r2": (1 - left / spread).tolist(),
@@ -65,9 +66,8 @@ def brownian(setting: Setting) -> Result:
         tables={"views": found.table(poses), "distances": near.pairs, "places": near.places},
         figures={
             "room": plot_room(setting.room, poses),
-            "torus": plot_embedding(
-                found.embedding[:, :3], poses[:, 2], {"x (m)": poses[:, 0], "y (m)": poses[:, 1]}
-            ),
+            "torus": plot_embedding(found.embedding, poses[:, 2], places),
+            "torus_fourth": plot_embedding(found.embedding, poses[:, 2], places, coordinates=(0, 1, 3)),
             "heading": plot_compass(read.headings, truth[:, 2], truth[:, :2]),
             "position": plot_position(read.positions, truth[:, :2]),
             "distances": plot_quasi_metric(near.pairs, near.places),
