@@ -47,7 +47,7 @@ def plot_embedding(
     Raises
     ------
     CogmapError
-        For values that are not finite, shapes that do not fit, coordinates that do not exist, other than two or three.
+        For values that are not finite, shapes that do not fit, coordinates that do not exist.
     """
     check_array("embedding", embedding, (None, None))
     check_array("headings", headings, (len(embedding),))
@@ -64,7 +64,7 @@ def plot_embedding(
     panels = figure.subplots(
         1, 1 + len(others), squeeze=False, subplot_kw={"projection": "3d"} if components == 3 else {}
     )[0]
-    points = embedding[np.ix_(chosen, coordinates)].T
+    points = embedding[chosen][:, list(coordinates)].T
     names = [f"coordinate {one + 1} (no unit)" for one in coordinates]
     _draw(panels[0], points, names, direction_colours(headings[chosen]))
     heading_bar(panels[0], pad=PADS[components])
