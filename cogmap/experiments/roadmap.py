@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import shapely
 from jaxtyping import Float, Int
+from matplotlib.figure import Figure
 
 from arena import Arena, Body, Brownian, Camera, explore
 from cogmap.errors import CogmapError
@@ -35,6 +36,8 @@ ON_THE_WAY = 9
 
 
 class _Plan(NamedTuple):
+    route: Int[np.ndarray, "_"]
+    """Views on the way."""
     path: Float[np.ndarray, "steps 3"] | None
     """Poses from start through those of the views to goal; None without a plan."""
     milliseconds: float
@@ -43,11 +46,11 @@ class _Plan(NamedTuple):
 def roadmap(setting: Setting) -> Result:
     """Algorithm 1 and Fig. 7: plan between 200 pairs of poses over views, and beside it with OMPL's PRM.
 
-    The robot explores with a panoramic camera and a bumper 3 cm wider than its body, plans from the panoramas
-    at start and goal, and is given no pose. Poses enter in the scores: the path leads from the start through
-    the poses of the views to the goal, along straight lines. It touches an obstacle when the body's disc on it
-    reaches 1 mm into a solid. The PRM has as many milestones as there are views, and the arena's own collision
-    check; `prm_*` are left out when `ompl` is not installed, as `prm` tells.
+    The robot explores with a panoramic camera and a bumper 3 cm wider than its body, plans from the
+    panoramas at start and goal, and is given no pose. Poses enter in the scores: the path leads from the
+    start through the poses of the views to the goal, along straight lines. It touches an obstacle when the
+    body's disc on it reaches more than 1 mm into a solid. The PRM has as many milestones as there are views,
+    and the arena's own collision check; `prm_*` are left out when `ompl` is not installed, as `prm` tells.
     """
     room, body, around = setting.room, Body(), Camera.panoramic(120, 20)
     walk = explore(
@@ -67,7 +70,7 @@ def roadmap(setting: Setting) -> Result:
     pieces = planner.pieces.sizes
     seconds = time.perf_counter() - started
     ends = code.transform(around.render(room, pairs.reshape(-1, 3))).reshape(PAIRS, 2, -1)
-    routes, plans = _plan(planner, ends, pairs, poses)
+    plans = _plan(planner, ends, pairs, poses)
     shortest = shortest_lengths(room, pairs[:, :, :2], body.radius)
     table = _pairs_table(pairs, shortest).join(_scores(room, [plan.path for plan in plans], shortest))
     table["query_ms"] = [plan.milliseconds for plan in plans]
@@ -78,10 +81,9 @@ def roadmap(setting: Setting) -> Result:
         table = table.join(theirs)
         metrics |= _summary(theirs, "prm_")
         metrics["deviation_ratio"] = metrics["deviation_mean"] / metrics["prm_deviation_mean"]
-    shown = [index for index, route in enumerate(routes) if len(route)]
-    shown = sorted(
-        shown, key=lambda index: -shortest[index] / np.linalg.norm(np.diff(pairs[index, :, :2], axis=0))
-    )
+    detour = shortest / np.linalg.norm(pairs[:, 1, :2] - pairs[:, 0, :2], axis=1)
+    done = np.flatnonzero(table["success"])
+    shown = done[np.argsort(-detour[done], kind="stable")][:SHOWN]
     return Result(
         metrics={
             "pairs": PAIRS,
@@ -92,8 +94,10 @@ def roadmap(setting: Setting) -> Result:
             "largest_piece": float(pieces[0] / pieces.sum()),
             "seconds": {"roadmap": round(seconds, 3)},
         },
-        tables={"pairs": table, "routes": _routes_table(routes, poses)},
-        figures=_figures(setting.room, shown[:SHOWN], routes, plans, peer, poses),
+        tables={"pairs": table, "routes": _routes_table([plan.route for plan in plans], poses)},
+        figures=_figures(
+            room, [(plans[pair], None if peer is None else peer[pair]) for pair in shown], poses
+        ),
     )
 
 
@@ -118,8 +122,8 @@ def _plan(
     ends: Float[np.ndarray, "pairs 2 features"],
     pairs: Float[np.ndarray, "pairs 2 3"],
     poses: Float[np.ndarray, "views 3"],
-) -> tuple[list[Int[np.ndarray, "_"]], list[_Plan]]:
-    routes, plans = [], []
+) -> list[_Plan]:
+    plans = []
     # What is made at the first plan is not part of a query.
     planner.nearest(ends[0, 0])
     for (start, goal), pair in zip(ends, pairs, strict=True):
@@ -130,9 +134,8 @@ def _plan(
             route = np.empty(0, dtype=int)
         lapse = 1e3 * (time.perf_counter() - began)
         path = np.vstack([pair[0], poses[route], pair[1]])
-        routes.append(route)
-        plans.append(_Plan(path if len(route) and _arrives(path) else None, lapse))
-    return routes, plans
+        plans.append(_Plan(route, path if len(route) and _arrives(path) else None, lapse))
+    return plans
 
 
 def _arrives(path: Float[np.ndarray, "steps 3"]) -> bool:
@@ -143,7 +146,7 @@ def _arrives(path: Float[np.ndarray, "steps 3"]) -> bool:
 
 def _scores(
     room: Arena,
-    paths: list[Float[np.ndarray, "_ 3"]] | list[Float[np.ndarray, "_ 3"] | None],
+    paths: list[Float[np.ndarray, "_ 3"] | None],
     shortest: np.ndarray,
 ) -> pd.DataFrame:
     """Tell of each path what it is worth; NaN where there is none."""
@@ -203,17 +206,14 @@ def _routes_table(routes: list[Int[np.ndarray, "_"]], poses: Float[np.ndarray, "
 
 def _figures(
     room: Arena,
-    shown: list[int],
-    routes: list[Int[np.ndarray, "_"]],
-    plans: list[_Plan],
-    peer: list[Float[np.ndarray, "_ 3"] | None] | None,
+    shown: list[tuple[_Plan, Float[np.ndarray, "_ 3"] | None]],
     poses: Float[np.ndarray, "views 3"],
-) -> dict[str, Any]:
-    """Draw the routes that lead farthest around obstacles, and what is seen on one of them."""
-    drawn = [(plans[index].path, None if peer is None else peer[index]) for index in shown]
-    figures = {"routes": plot_routes(room, [(mine, theirs) for mine, theirs in drawn if mine is not None])}
+) -> dict[str, Figure]:
+    """Draw the routes that lead farthest around obstacles, and what is seen on the first."""
+    paths = [(plan.path, theirs) for plan, theirs in shown if plan.path is not None]
+    figures = {"routes": plot_routes(room, paths)}
     if shown:
-        route = routes[shown[0]]
+        route = shown[0][0].route
         seen = route[np.linspace(0, len(route) - 1, min(ON_THE_WAY, len(route))).astype(int)]
         views = Camera.perspective(160, 120).render(room, poses[seen])
         figures["images"] = plot_views(views, poses[seen], panoramic=False)

@@ -31,10 +31,11 @@ _f = np.arange(FREQUENCIES, dtype=np.float32)
 def turns(
     strips: Strips, pairs: Int[np.ndarray, "pairs 2"], others: Strips | None = None
 ) -> Float[np.ndarray, "pairs"]:
-    r"""Give the heading of the first view of each pair minus that of the second, rad, taken near to each other.
+    r"""Give the heading of the first view of each pair minus that of the second, rad.
 
-    A turn shifts a panorama as a whole, a step shifts what is near more than what is far: with ψ the direction
-    of the step and u the nearness (1 / distance) of what is seen at azimuth φ, the flow is
+    Both must be from places near to each other. A turn shifts a panorama as a whole, a step shifts what is
+    near more than what is far: with t and ψ the length and direction of the step and u the nearness
+    (1 / distance) of what is seen at azimuth φ, the flow is
 
     .. math:: s(\varphi) = \Delta + t\,u(\varphi) \sin(\varphi - \psi).
 

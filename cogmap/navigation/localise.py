@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+import scipy.sparse as sp
 from jaxtyping import Float, Int
 
 from cogmap.errors import CogmapError
@@ -35,8 +36,8 @@ class Localiser:
 
     .. math:: w = \frac{1}{k} + \frac{1}{k} X (X^\top X / k + \lambda t I)^{-1} (q - \bar c),
 
-    where t is the total variance of the k codes. Any quantity y that varies linearly over the neighbourhood is
-    then Σ w y: a regression of y on the codes, without y having been asked for.
+    where t is the total variance of the k codes. Any quantity y that varies linearly over the neighbourhood
+    is then Σ w y: a regression of y on the codes, without y having been asked for.
 
     Parameters
     ----------
@@ -86,7 +87,7 @@ class Localiser:
         asked = _codes(query if codes is None else codes, query.shape[0])
         if known.shape[1] != asked.shape[1]:
             raise CogmapError(
-                f"codes of the query have {asked.shape[1]} features but the remembered ones {known.shape[1]}; "
+                f"codes of the query have {asked.shape[1]} features but those of the views {known.shape[1]}; "
                 "make both alike"
             )
         count = min(checked_count("neighbours", self.neighbours), self.features.shape[0])
@@ -114,7 +115,7 @@ class Localiser:
         # Equal codes have no spread, and then no view is more like the query than another.
         products += np.eye(len(share[0])) * (self.ridge * spread + (spread == 0))[:, None, None]
         sought = near @ (asked - mean)[:, :, None]
-        weights = share + np.sqrt(share) * np.linalg.solve(products, sought)[:, :, 0]
+        weights: np.ndarray = share + np.sqrt(share) * np.linalg.solve(products, sought)[:, :, 0]
         weights[indices[:, 0] < 0] = np.nan
         return weights
 
@@ -123,4 +124,5 @@ def _codes(codes: Cloud, views: int) -> Float[np.ndarray, "views codes"]:
     checked = checked_cloud(codes)
     if checked.shape[0] != views:
         raise CogmapError(f"there are {checked.shape[0]} codes but {views} views; give one code per view")
-    return checked if isinstance(checked, np.ndarray) else checked.toarray()
+    dense: np.ndarray = checked.toarray() if sp.issparse(checked) else checked
+    return dense

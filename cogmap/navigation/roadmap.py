@@ -84,11 +84,11 @@ class VisualRoadmap:
         if labels[start] != labels[goal]:
             sizes = self.pieces.sizes
             raise CogmapError(
-                f"no way leads from view {start} to view {goal}: they are in separate pieces of the neighbour "
-                f"graph, of {sizes[labels[start]]} and {sizes[labels[goal]]} views; "
+                f"no way leads from view {start} to view {goal}: they are in separate pieces of the "
+                f"neighbour graph, of {sizes[labels[start]]} and {sizes[labels[goal]]} views; "
                 "explore between them or ask for more neighbours"
             )
-        _, before = dijkstra(self.graph, indices=goal, return_predecessors=True)
+        before = dijkstra(self.graph, indices=[goal], return_predecessors=True)[1][0]
         route = [start]
         while before[route[-1]] != ABSENT:
             route.append(int(before[route[-1]]))

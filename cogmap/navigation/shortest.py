@@ -21,8 +21,8 @@ def shortest_lengths(
 ) -> Float[np.ndarray, "pairs"]:
     """Measure the shortest ways of a disc of this radius between pairs of places, m.
 
-    Dijkstra's algorithm on the visibility graph: between the corners of free space, whose arcs have 64 corners
-    a turn and are thereby taken 0.03 % too short at most, and the two places.
+    Dijkstra's algorithm on the visibility graph of the two places and the corners of free space, whose arcs
+    have 64 corners a turn and are thereby taken 0.04 % too short.
 
     Parameters
     ----------
@@ -60,8 +60,8 @@ def shortest_lengths(
             continue
         joined = _visible(free, ends[:, None], corners[None])
         ways = np.where(joined, np.linalg.norm(ends[:, None] - corners[None], axis=2), 0)
-        graph = sp.block_array([[known, None], [ways, sp.csr_array((2, 2))]], format="csr")
-        lengths[index] = dijkstra(graph, directed=False, indices=len(corners))[-1]
+        graph = sp.csr_array(np.pad(np.vstack([known, ways]), ((0, 0), (0, 2))))
+        lengths[index] = dijkstra(graph, directed=False, indices=[len(corners)])[0, -1]
     if not np.isfinite(lengths).all():
         raise CogmapError("no way leads between some of the places; draw both from one part of free space")
     return lengths
@@ -69,5 +69,4 @@ def shortest_lengths(
 
 def _visible(free: shapely.Geometry, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
     starts, ends = np.broadcast_arrays(starts, ends)
-    seen: np.ndarray = shapely.covers(free, shapely.linestrings(np.stack([starts, ends], axis=-2)))
-    return seen
+    return np.asarray(shapely.covers(free, shapely.linestrings(np.stack([starts, ends], axis=-2))))

@@ -37,15 +37,16 @@ def plot_localisation(table: pd.DataFrame) -> Figure:
     for prefix, name, colour in KINDS:
         _draw(left, 100 * table[f"{prefix}position_error_m"].to_numpy(), name, " cm", colour)
         _draw(right, table[f"{prefix}heading_error_deg"].to_numpy(), name, "°", colour)
-    left.set_ylim(0, 1.01)
+    left.set_ylim(0, 1.25)
+    left.set_yticks([0, 0.25, 0.5, 0.75, 1])
     return figure
 
 
 def _draw(axes: Axes, errors: np.ndarray, name: str, unit: str, colour: str) -> None:
     median, most = np.percentile(errors, [50, 95])
-    said = f"{name}: median {median:.2g}{unit}, 95 % below {most:.2g}{unit}"
+    said = f"{name}: median {median:.3g}{unit}, 95 % below {most:.3g}{unit}"
     # Errors of nothing at all have no place on a logarithmic axis.
     axes.ecdf(np.maximum(errors, 1e-3), color=colour, linewidth=1.6, label=said)
     axes.set_xscale("log")
     axes.axhline(0.5, color=SOFT, linewidth=0.6, linestyle=":")
-    tidy_legend(axes, loc="lower right")
+    tidy_legend(axes, loc="upper left")
