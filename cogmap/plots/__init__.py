@@ -6,10 +6,13 @@ from cogmap.plots.confusion import plot_confusion
 from cogmap.plots.embedding import plot_embedding
 from cogmap.plots.heading_cells import plot_tuning_curves
 from cogmap.plots.likeness import plot_likeness
+from cogmap.plots.localisation import plot_localisation
+from cogmap.plots.neighbours import plot_neighbours
 from cogmap.plots.place_cells import plot_rate_maps
 from cogmap.plots.position import plot_position
 from cogmap.plots.quasi_metric import plot_quasi_metric
 from cogmap.plots.room import plot_room
+from cogmap.plots.routes import plot_routes
 from cogmap.plots.sheet import plot_sheet
 from cogmap.plots.translation import plot_translation
 from cogmap.plots.views import plot_views
@@ -21,10 +24,13 @@ __all__ = [
     "plot_confusion",
     "plot_embedding",
     "plot_likeness",
+    "plot_localisation",
+    "plot_neighbours",
     "plot_position",
     "plot_quasi_metric",
     "plot_rate_maps",
     "plot_room",
+    "plot_routes",
     "plot_sheet",
     "plot_translation",
     "plot_tuning_curves",
