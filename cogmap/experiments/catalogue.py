@@ -12,8 +12,10 @@ from cogmap.errors import CogmapError
 from cogmap.experiments.brownian import brownian
 from cogmap.experiments.cyclic import cyclic
 from cogmap.experiments.distinguishability import distinguishability
+from cogmap.experiments.localisation import localisation
 from cogmap.experiments.outputs import result_folder
 from cogmap.experiments.result import Result
+from cogmap.experiments.roadmap import roadmap
 from cogmap.experiments.rotation import rotation
 from cogmap.experiments.setting import Setting
 from cogmap.experiments.similarity import similarity
@@ -36,6 +38,8 @@ EXPERIMENTS = {
     "cyclic": Experiment(cyclic, "furnished", 4_000),
     "brownian": Experiment(brownian, "furnished", 17_000),
     "similarity": Experiment(similarity, "furnished", 5_000),
+    "localisation": Experiment(localisation, "furnished", 17_000),
+    "roadmap": Experiment(roadmap, "obstacles", 17_000),
     "distinguishability": Experiment(distinguishability, "white_rectangle", 17_000),
 }
 

@@ -10,12 +10,22 @@ from arena import Arena
 from cogmap import CogmapError
 from cogmap.experiments.catalogue import EXPERIMENTS, experiment
 
-VIEWS = {"rotation": 300, "cyclic": 300, "brownian": 300, "similarity": 200, "distinguishability": 300}
+VIEWS = {
+    "rotation": 300,
+    "cyclic": 300,
+    "brownian": 300,
+    "similarity": 200,
+    "localisation": 300,
+    "roadmap": 1500,
+    "distinguishability": 300,
+}
 KEYS = {
     "rotation": {"test_correlation", "median_error_deg", "betti", "dimension", "geodesic_rank_correlation"},
     "cyclic": {"heading_resultant", "translation_r2", "betti", "dimension"},
     "brownian": {"position_r2", "heading_resultant", "betti", "dimension"},
     "similarity": {"euclidean", "bag_of_words", "earth_mover"},
+    "localisation": {"position_median_m", "heading_median_deg", "nearest_position_median_m", "placed"},
+    "roadmap": {"success", "length_ratio_median", "paths_touching", "deviation_mean", "query_ms"},
     "distinguishability": {"confusion_white", "confusion_blue_wall", "betti_white", "betti_blue_wall"},
 }
 
