@@ -62,7 +62,7 @@ def _turns(
 ) -> Float[np.ndarray, "pairs"]:
     sharp = (_f * np.exp(-np.square(_f / FINEST))) ** 2
     likeness = fft.irfft((first * second.conj()).sum(axis=1) * sharp, 2 * COLUMNS, axis=1)
-    whole = likeness.argmax(axis=1) * np.float32(np.pi / COLUMNS)
+    whole = likeness.argmax(axis=1).astype(np.float32) * np.float32(np.pi / COLUMNS)
     low = np.exp(-0.5 * np.square(BLUR * _f))
     first = first * low
     second = second * np.exp(-1j * whole[:, None, None] * _f) * low

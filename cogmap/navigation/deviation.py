@@ -46,7 +46,7 @@ def path_deviation(path: Float[np.ndarray, "steps 3"]) -> Deviation:
     gone = np.insert(np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)), 0, 0.0)
     sampled = np.column_stack([np.interp(np.linspace(0, gone[-1], STEPS), gone, part) for part in points.T])
     straight = points[-1] - points[0]
-    straight[2] = _short_way(straight[2])
+    straight[2:] = _short_way(straight[2:])
     length = straight @ straight
     share = np.clip((sampled - points[0]) @ straight / length, 0, 1) if length else np.zeros(STEPS)
     away = sampled - points[0] - share[:, None] * straight

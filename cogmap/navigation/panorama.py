@@ -11,6 +11,7 @@ from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.decomposition import PCA
 from sklearn.utils.validation import check_is_fitted
 
+from cogmap.errors import CogmapError
 from cogmap.inputs import checked_count
 from cogmap.manifold.nearest import nearest_points
 from cogmap.manifold.neighbours import neighbour_graph
@@ -50,7 +51,8 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
     Raises
     ------
     CogmapError
-        For views that are not panoramas, and counts below one.
+        For views that are not panoramas or all alike, fewer different ones than neighbours, and counts below
+        one.
     """
 
     def __init__(self, components: int = 40, *, turning: float = 0.8, neighbours: int = 20) -> None:
@@ -68,6 +70,8 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         del y
         self._known = strips(X)
         count = len(self._known.still)
+        if not np.ptp(self._known.still, axis=0).any():
+            raise CogmapError(f"{count} panoramas are all alike; explore more than one place")
         components = min(checked_count("components", self.components), count)
         neighbours = min(checked_count("neighbours", self.neighbours), count - 1)
         with one_thread():
@@ -75,8 +79,7 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
             components = min(components, *sample.shape)
             self._axes = PCA(components, svd_solver="covariance_eigh").fit(sample)
             found = self._axes.transform(self._known.still).astype(np.float64)
-            # Equal views have no variance.
-            self._scale = 1 / np.sqrt(found.var(axis=0).sum() or 1.0)
+            self._scale = 1 / np.sqrt(found.var(axis=0).sum())
             self._places = self._scale * found
             self.headings_ = self._north(neighbours)
         return self._features(self._places, self.headings_)
@@ -94,8 +97,6 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         return self._features(places, headings)
 
     def _north(self, neighbours: int) -> Float[np.ndarray, "views"]:
-        if neighbours == 0:
-            return np.zeros(1)
         graph = neighbour_graph(self._places, neighbours)
         edges = np.column_stack(sp.triu(graph, 1).nonzero())
         return common_north(graph, edges, turns(self._known, edges))

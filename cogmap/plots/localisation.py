@@ -49,4 +49,4 @@ def _draw(axes: Axes, errors: np.ndarray, name: str, unit: str, colour: str) -> 
     axes.ecdf(np.maximum(errors, 1e-3), color=colour, linewidth=1.6, label=said)
     axes.set_xscale("log")
     axes.axhline(0.5, color=SOFT, linewidth=0.6, linestyle=":")
-    tidy_legend(axes, loc="upper left")
+    tidy_legend(axes, loc="best")

@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import networkx as nx
 import numpy as np
 import pytest
@@ -19,7 +21,7 @@ def test_it_plans_what_networkx_plans() -> None:
         route = planner.plan(points[start], points[goal])
         assert route[0] == start
         assert route[-1] == goal
-        cost = sum(graph[a, b] for a, b in zip(route[:-1], route[1:], strict=True))
+        cost = sum(graph[a, b] for a, b in pairwise(route))
         assert cost == pytest.approx(nx.dijkstra_path_length(theirs, start, goal))
 
 
