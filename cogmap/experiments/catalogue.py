@@ -31,6 +31,8 @@ class Experiment(NamedTuple):
     conduct: Callable[[Setting], Result]
     room: str
     views: int
+    elsewhere: bool = True
+    """Whether it can be done in other rooms."""
 
 
 EXPERIMENTS = {
@@ -40,7 +42,7 @@ EXPERIMENTS = {
     "similarity": Experiment(similarity, "furnished", 5_000),
     "localisation": Experiment(localisation, "furnished", 17_000),
     "roadmap": Experiment(roadmap, "obstacles", 17_000),
-    "distinguishability": Experiment(distinguishability, "white_rectangle", 17_000),
+    "distinguishability": Experiment(distinguishability, "white_rectangle", 17_000, elsewhere=False),
 }
 
 
@@ -79,6 +81,8 @@ def experiment(
     if name not in EXPERIMENTS:
         raise CogmapError(f"there is no experiment {name!r}; choose one of {', '.join(EXPERIMENTS)}")
     chosen = EXPERIMENTS[name]
+    if room is not None and not chosen.elsewhere:
+        raise CogmapError(f"{name} takes place in rooms of its own, not in {room.name!r}; leave the room out")
     views = chosen.views if views is None else checked_count("views", views, FEWEST)
     setting = Setting(room or Arena.load(chosen.room), views, seed, progress)
     with nullcontext() if out is None else result_folder(out) as folder:

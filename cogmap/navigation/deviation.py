@@ -8,9 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from cogmap.cells.checks import check_array
+from cogmap.manifold.similarity import METRES_PER_RADIAN
 
-METRES_PER_RADIAN = 0.5
-"""What a turn counts."""
 STEPS = 200
 """Equal steps at which a path is sampled."""
 

@@ -62,6 +62,11 @@ def test_a_room_can_be_chosen() -> None:
     assert experiment("rotation", views=200, room=Arena.load("open_field")).metrics["arena"] == "open_field"
 
 
+def test_what_has_rooms_of_its_own_is_done_nowhere_else() -> None:
+    with pytest.raises(CogmapError, match="rooms of its own"):
+        experiment("distinguishability", room=Arena.load("furnished"))
+
+
 @pytest.mark.parametrize(
     ("name", "views", "says"),
     [("levitation", None, "choose one of rotation"), ("rotation", 10, "views is 10")],
