@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from arena import Arena
@@ -84,10 +85,13 @@ def experiment(
     if room is not None and not chosen.elsewhere:
         raise CogmapError(f"{name} takes place in rooms of its own, not in {room.name!r}; leave the room out")
     views = chosen.views if views is None else checked_count("views", views, FEWEST)
-    setting = Setting(room or Arena.load(chosen.room), views, seed, progress)
-    with nullcontext() if out is None else result_folder(out) as folder:
-        found = chosen.conduct(setting)
-        about = {"experiment": name, "arena": setting.room.name, "views": views, "seed": seed}
+    room = room or Arena.load(chosen.room)
+    with (
+        nullcontext() if out is None else result_folder(out) as folder,
+        TemporaryDirectory(prefix="cogmap-") as scratch,
+    ):
+        found = chosen.conduct(Setting(room, views, seed, progress, Path(scratch)))
+        about = {"experiment": name, "arena": room.name, "views": views, "seed": seed}
         result = Result({**about, **found.metrics}, found.tables, found.figures)
         if folder is not None:
             result.write(folder)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -65,7 +66,7 @@ def distinguishability(setting: Setting) -> Result:
 
 def _look(setting: Setting, room: Arena) -> _Seen:
     strips = Camera.panoramic()
-    here = Setting(room, setting.views, setting.seed, setting.progress)
+    here = replace(setting, room=room)
     walk = here.explore(Brownian(), strips)
     fresh = here.explore(Brownian(), strips, views=min(QUERIES, setting.views), fresh=True)
     known, asked = _codes(np.asarray(walk.views), np.asarray(fresh.views), setting.seed)

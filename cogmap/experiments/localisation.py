@@ -57,7 +57,7 @@ def localisation(setting: Setting) -> Result:
         tables={"views": table, "neighbours": _table_3(shown, neighbours, truth, known)},
         figures={
             "neighbours": plot_neighbours(
-                np.stack([fresh.views[view] for view in shown]),
+                np.asarray(fresh[shown].views),
                 truth[shown],
                 np.stack([[walk.views[view] for view in row] for row in neighbours]),
                 known[neighbours],

@@ -11,7 +11,7 @@ import shapely
 from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
-from arena import Arena, Body, Brownian, Camera, explore
+from arena import Arena, Body, Brownian, Camera
 from cogmap.errors import CogmapError
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import Setting, poses_of
@@ -27,7 +27,7 @@ MARGIN = 0.03
 """By how much (m) the explorer keeps farther from everything than the body that plans must."""
 TOUCH = 1e-3
 """A body that reaches deeper (m) than this into an obstacle touches it."""
-ARRIVED = 0.3, np.deg2rad(40)
+ARRIVED = 0.5, np.deg2rad(45)
 """How near (m, rad) the first and last view must be to start and goal for a plan to be a success."""
 SHOWN = 6
 """Routes that are drawn."""
@@ -53,15 +53,7 @@ def roadmap(setting: Setting) -> Result:
     and the arena's own collision check; `prm_*` are left out when `ompl` is not installed, as `prm` tells.
     """
     room, body, around = setting.room, Body(), Camera.panoramic(120, 20)
-    walk = explore(
-        room,
-        Brownian(),
-        around,
-        body=Body(radius=body.radius + MARGIN),
-        views=setting.views,
-        seed=setting.seed,
-        progress=setting.progress,
-    )
+    walk = setting.explore(Brownian(), around, body=Body(radius=body.radius + MARGIN))
     poses = poses_of(walk)
     pairs = draw_pairs(room, body.radius, setting.seed)
     started = time.perf_counter()
@@ -167,7 +159,7 @@ def _scores(
         rows.append(row)
     names = ["success", "length_m", "length_ratio", "touches"]
     names += ["deviation_mean", "deviation_variance", "deviation_maximum"]
-    return pd.DataFrame(rows, columns=names)
+    return pd.DataFrame(rows, columns=names).astype({"touches": "boolean"})
 
 
 def _summary(scores: pd.DataFrame, prefix: str = "") -> dict[str, float]:

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
+from tempfile import mkdtemp
 
 import numpy as np
 from jaxtyping import Float
 
-from arena import Arena, Camera, Motion, Recording, explore
+from arena import Arena, Body, Camera, Motion, Recording, explore
 
 FRESH_SEED = 1000
 """Added to the seed for a fresh walk, on which what was learnt is scored."""
+_BODY = Body()
 
 
 @dataclass(frozen=True)
@@ -24,17 +27,27 @@ class Setting:
     """Of walks, noise and all that is drawn."""
     progress: bool = False
     """Whether to show progress on stderr."""
+    scratch: Path | None = None
+    """Folder to keep views in while the experiment lasts; in memory when None."""
 
     def explore(
-        self, motion: Motion, camera: Camera, *, views: int | None = None, fresh: bool = False
+        self,
+        motion: Motion,
+        camera: Camera,
+        *,
+        body: Body = _BODY,
+        views: int | None = None,
+        fresh: bool = False,
     ) -> Recording:
         """Walk through the room; the same walk whatever the camera."""
         return explore(
             self.room,
             motion,
             camera,
+            body=body,
             views=self.views if views is None else views,
             seed=self.seed + FRESH_SEED * fresh,
+            out=None if self.scratch is None else Path(mkdtemp(dir=self.scratch)) / "walk.zarr",
             progress=self.progress,
         )
 

@@ -72,8 +72,8 @@ def similarity(setting: Setting) -> Result:
         ignore_index=True,
     )
     shown = np.linspace(0, count - 1, min(SHOWN, count)).astype(int)
-    pictures = {"query": fresh.views[shown]} | {
-        name: np.stack([walk.views[view] for view in found[shown]]) for name, found in best.items()
+    pictures = {"query": np.asarray(fresh[shown].views)} | {
+        name: np.asarray(walk[found[shown]].views) for name, found in best.items()
     }
     return Result(
         metrics=metrics, tables={"nearest": table}, figures={"likeness": plot_likeness(table, pictures)}

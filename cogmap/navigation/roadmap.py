@@ -15,6 +15,8 @@ from cogmap.manifold.cloud import Checked, Cloud, checked_cloud
 from cogmap.manifold.nearest import Metric
 from cogmap.manifold.neighbours import Components, components, neighbour_graph
 
+ONE_SIDED = 5
+"""Nearest views that a view is joined to even when it is not among theirs."""
 ABSENT = -9999
 """What scipy's Dijkstra calls the predecessor of a point that has none."""
 
@@ -36,7 +38,8 @@ class VisualRoadmap:
     features
         Of the remembered views, (views, features), dense or sparse: `PanoramaCode`, `BagOfWords`.
     neighbours
-        How many nearest views each is joined to.
+        How many nearest views each is joined to, where these count it among theirs; to its five nearest in
+        any case.
     power
         p.
     metric
@@ -57,7 +60,7 @@ class VisualRoadmap:
         self,
         features: Cloud,
         *,
-        neighbours: int = 30,
+        neighbours: int = 45,
         power: float = 1.25,
         metric: Metric = "euclidean",
     ) -> None:
@@ -110,7 +113,7 @@ class VisualRoadmap:
         """Symmetric costs between neighbours."""
         if self.features.shape[0] == 1:
             return sp.csr_array((1, 1))
-        graph = neighbour_graph(self.features, self.neighbours, metric=self.metric)
+        graph = neighbour_graph(self.features, self.neighbours, metric=self.metric, one_sided=ONE_SIDED)
         # Equal views stay joined: the power of a tiny length may be zero, which is no edge.
         graph.data = np.maximum(graph.data**self.power, np.finfo(float).tiny)
         return graph

@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -21,6 +23,15 @@ def test_a_fresh_walk_is_another() -> None:
     assert not np.array_equal(poses_of(known), poses_of(fresh))
     same = Setting(ROOM, 20, seed=FRESH_SEED).explore(Brownian(), SMALL)
     np.testing.assert_array_equal(poses_of(same), poses_of(fresh))
+
+
+def test_views_kept_in_a_folder_are_the_same(tmp_path: Path) -> None:
+    there, here = (Setting(ROOM, 30, scratch=folder) for folder in (tmp_path, None))
+    for fresh in (False, True):
+        kept = there.explore(Brownian(), SMALL, fresh=fresh)
+        np.testing.assert_array_equal(kept.views, here.explore(Brownian(), SMALL, fresh=fresh).views)
+        assert not isinstance(kept.views, np.ndarray)
+    assert len(list(tmp_path.iterdir())) == 2
 
 
 def test_what_has_no_truth_is_refused() -> None:
