@@ -13,7 +13,7 @@ WINNERS = 6
 FLATNESS = 0.05
 """Smallest width of a tuning in any direction, as a fraction of its mean variance."""
 FAINTEST = -50.0
-"""Least exponent of a tuning, 4e-21 Hz: further down, where floats are subnormal, exp is twenty times slower."""
+"""Least exponent of a tuning, 4e-21 Hz: exp is twenty times slower where floats become subnormal."""
 BLOCK = 256
 """Smells evaluated together: what a core's cache holds for a thousand cells."""
 
