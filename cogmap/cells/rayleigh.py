@@ -57,10 +57,9 @@ def rayleigh_test(
     if bins is not None:
         index = heading_bin(headings, bins)
         weight = 1 / np.bincount(index, minlength=bins)[index]
-    counts = spikes.astype(float)
-    total = weight @ counts
-    number = ratio(total**2, weight**2 @ counts)
-    resultant = np.abs(ratio((weight * np.exp(1j * headings.astype(float))) @ counts, total))
+    across, along = weight * np.cos(headings), weight * np.sin(headings)
+    total, x, y, square = np.stack([weight, across, along, weight**2]) @ spikes.astype(float)
+    number, resultant = ratio(total**2, square), ratio(np.hypot(x, y), total)
     z = number * resultant**2
     # NaN stays NaN.
     n = np.maximum(number, 1e-12)

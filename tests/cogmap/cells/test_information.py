@@ -56,7 +56,10 @@ def test_agrees_with_pynapple_neurospatial_and_spatial_maps(wander: Callable) ->
         maps.rates,
         dims=("unit", "y", "x"),
         coords={"unit": np.arange(5)},
-        attrs={"occupancy": maps.occupancy, "rates": np.nansum(maps.rates * maps.occupancy, axis=(1, 2)) / 800},
+        attrs={
+            "occupancy": maps.occupancy,
+            "rates": np.nansum(maps.rates * maps.occupancy, axis=(1, 2)) / 800,
+        },
     )
     np.testing.assert_allclose(information, nap.compute_mutual_information(curves)["bits/spike"])
     p = maps.occupancy / maps.occupancy.sum()

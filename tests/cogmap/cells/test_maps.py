@@ -33,7 +33,7 @@ def test_agrees_with_spatial_maps(wander: Callable) -> None:
     times, counts = np.arange(3000.0), np.random.default_rng(0).poisson(1, 3000)
     maps = rate_maps(counts[:, None].astype(float), positions)
     peer = SpatialMap(smoothing=0.15, box_size=[3.6, 2.6], bin_size=0.1)
-    expected = peer.rate_map(*(positions + [1.8, 1.3]).T, times, np.repeat(times, counts))
+    expected = peer.rate_map(*(positions + np.array([1.8, 1.3])).T, times, np.repeat(times, counts))
     known = ~np.isnan(expected).T
     # It cuts its Gaussian off at 8 σ, ours ends at 4 σ.
     np.testing.assert_allclose(maps[0][known], expected.T[known], rtol=1e-3)

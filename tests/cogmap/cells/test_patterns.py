@@ -23,9 +23,7 @@ def test_agrees_with_scipy_and_pynapple() -> None:
     found = pattern_correlations(activity, patterns)
     np.testing.assert_allclose(1 - found, cdist(activity, patterns.T, "correlation"), atol=1e-12)
     where = np.linspace(0, 2, 9)
-    curves = xr.DataArray(
-        patterns, dims=("unit", "place"), coords={"unit": np.arange(6), "place": where}
-    )
+    curves = xr.DataArray(patterns, dims=("unit", "place"), coords={"unit": np.arange(6), "place": where})
     support = nap.IntervalSet(0, 30)
     counts = nap.TsdFrame(np.arange(30) + 0.5, activity, columns=np.arange(6), time_support=support)
     decoded, _ = nap.decode_template(curves, counts, support, 1.0)
