@@ -8,6 +8,7 @@ import os
 import platform
 import sys
 
+from benchmarks.evaluating import evaluating
 from benchmarks.exploring import exploring
 from benchmarks.learning import learning
 from benchmarks.manifold import manifold
@@ -18,7 +19,8 @@ from benchmarks.walking import walking
 from cogmap.tables import as_table
 
 SUBJECTS = {
-    subject.__name__: subject for subject in (rendering, walking, exploring, stepping, learning, manifold)
+    subject.__name__: subject
+    for subject in (rendering, walking, exploring, stepping, learning, evaluating, manifold)
 }
 
 

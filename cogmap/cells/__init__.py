@@ -1,42 +1,64 @@
-"""Measures of cells: rate maps, tuning curves, fields, statistics, and what can be decoded from a population.
+"""Measures of cells: maps, curves, statistics and their nulls; spikes, and what can be decoded from them.
 
 All take samples: one row per view, each view one unit of occupancy; rates in Hz, positions in m, headings
 in rad.
 """
 
-from cogmap.cells.bins import BinEdges, bin_edges
+from cogmap.cells.bayes import poisson_posterior
+from cogmap.cells.bins import BinEdges, bin_edges, heading_centres
+from cogmap.cells.coherence import coherence
 from cogmap.cells.decoding import (
     HeadingFrame,
     decode_positions,
     fit_heading_frame,
     heading_errors,
+    likeliest,
     position_errors,
 )
 from cogmap.cells.fields import PlaceFields, place_coverage, place_fields
 from cogmap.cells.heading import heading_statistics
 from cogmap.cells.information import selectivity, sparsity, spatial_information
 from cogmap.cells.maps import RateMaps, rate_maps
+from cogmap.cells.patterns import pattern_correlations, population_vector_correlations
 from cogmap.cells.place import place_statistics
-from cogmap.cells.tuning import mean_vectors, tuning_curves
+from cogmap.cells.rayleigh import RayleighTest, rayleigh_test
+from cogmap.cells.shuffling import ShuffleTest, shuffle_test
+from cogmap.cells.spikes import poisson_spikes
+from cogmap.cells.stability import curve_stability, map_stability
+from cogmap.cells.tuning import mean_vectors, tuning_curves, tuning_widths
 
 __all__ = [
     "BinEdges",
     "HeadingFrame",
     "PlaceFields",
     "RateMaps",
+    "RayleighTest",
+    "ShuffleTest",
     "bin_edges",
+    "coherence",
+    "curve_stability",
     "decode_positions",
     "fit_heading_frame",
+    "heading_centres",
     "heading_errors",
     "heading_statistics",
+    "likeliest",
+    "map_stability",
     "mean_vectors",
+    "pattern_correlations",
     "place_coverage",
     "place_fields",
     "place_statistics",
+    "poisson_posterior",
+    "poisson_spikes",
+    "population_vector_correlations",
     "position_errors",
     "rate_maps",
+    "rayleigh_test",
     "selectivity",
+    "shuffle_test",
     "sparsity",
     "spatial_information",
     "tuning_curves",
+    "tuning_widths",
 ]

@@ -28,6 +28,11 @@ class BinEdges(NamedTuple):
         return len(self.y) - 1, len(self.x) - 1
 
     @property
+    def side(self) -> float:
+        """The side of a bin in m."""
+        return float(self.x[1] - self.x[0])
+
+    @property
     def centres(self) -> tuple[Float[np.ndarray, "nx"], Float[np.ndarray, "ny"]]:
         """The middles of the bins in m, along x and along y."""
         return (self.x[1:] + self.x[:-1]) / 2, (self.y[1:] + self.y[:-1]) / 2
@@ -95,6 +100,12 @@ def heading_bin(headings: Float[np.ndarray, "views"], bins: int) -> Int[np.ndarr
     if bins < 3:
         raise CogmapError(f"{bins} heading bins cannot tell a direction; give at least 3")
     return np.floor((headings.astype(float) + np.pi) * (bins / (2 * np.pi))).astype(int) % bins
+
+
+def heading_centres(bins: int) -> Float[np.ndarray, "bins"]:
+    """Give the middles of equal bins around the circle in rad, in the order of `heading_bin`."""
+    centres: np.ndarray = -np.pi + (np.arange(bins) + 0.5) * (2 * np.pi / bins)
+    return centres
 
 
 def sums_by_bin(

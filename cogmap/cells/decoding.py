@@ -1,4 +1,4 @@
-"""Reading place and heading out of a population, by decoders that were shown the truth of other views."""
+"""Reading place and heading out of activity, by decoders that were shown the truth of other views."""
 
 from __future__ import annotations
 
@@ -66,6 +66,30 @@ def position_errors(
         decode_positions(train_odours, train_positions, odours) - positions, axis=1
     )
     return missed
+
+
+def likeliest(
+    scores: Float[np.ndarray, "views bins"], centres: Float[np.ndarray, "bins *axes"]
+) -> Float[np.ndarray, "views *axes"]:
+    """Centre of the bin with the highest score in each view, NaN in a view without any score.
+
+    Parameters
+    ----------
+    scores
+        From `poisson_posterior` or `pattern_correlations`, (views, bins).
+    centres
+        Of the bins: `maps.places` in m, or `heading_centres(bins)` in rad.
+
+    Raises
+    ------
+    CogmapError
+        For centres of other bins.
+    """
+    check_array("centres", centres, (scores.shape[1], *(None,) * (centres.ndim - 1)))
+    known = ~np.isnan(scores)
+    decoded: np.ndarray = centres[np.where(known, scores, -np.inf).argmax(axis=1)]
+    decoded[~known.any(axis=1)] = np.nan
+    return decoded
 
 
 class HeadingFrame(NamedTuple):

@@ -10,7 +10,10 @@ from cogmap.cells.bins import BinEdges
 from cogmap.cells.checks import check_samples
 from cogmap.cells.information import spatial_information
 from cogmap.cells.maps import RateMaps, rate_maps
-from cogmap.cells.tuning import mean_vectors, tuning_curves
+from cogmap.cells.rayleigh import rayleigh_test
+from cogmap.cells.spikes import SECONDS, check_seconds
+from cogmap.cells.stability import curve_stability
+from cogmap.cells.tuning import mean_vectors, tuning_curves, tuning_widths
 
 LEAST_VECTOR = 0.5
 """A head-direction cell's mean vector is longer."""
@@ -32,6 +35,7 @@ def heading_statistics(
     headings: Float[np.ndarray, "views"],
     *,
     maps: RateMaps | None = None,
+    seconds: float = SECONDS,
 ) -> pd.DataFrame:
     """Measure every cell as a head-direction cell: one row per cell, one column per statistic.
 
@@ -47,11 +51,15 @@ def heading_statistics(
         In rad, (views,).
     maps
         The rate maps of these cells; by default `rate_maps(rates, positions)`.
+    seconds
+        How long a view lasts; with the rates it says how many spikes the Rayleigh test has.
 
     Returns
     -------
     pandas.DataFrame
-        `preferred_direction_rad` and `mean_vector_length` (36 occupancy-normalised bins), `drift_deg` (median
+        `preferred_direction_rad`, `mean_vector_length` and `tuning_width_deg` (at half height; 36
+        occupancy-normalised bins), `rayleigh_p` (of as many spikes as the rates make), `stability`
+        (correlation of the curves of both halves), `drift_deg` (median
         over 3×3 blocks of the room of the angle between the preferred direction there, from 12 bins, and
         everywhere; blocks with fewer than 100 views are left out), `spatial_information` (bit/spike),
         `passing`. NaN where a silent cell has no value.
@@ -63,11 +71,16 @@ def heading_statistics(
     """
     check_samples(rates, positions=positions, headings=headings)
     maps = rate_maps(rates, positions) if maps is None else maps.of_cells(rates.shape[1])
-    vector = mean_vectors(tuning_curves(rates, headings))
+    check_seconds(seconds)
+    curves = tuning_curves(rates, headings)
+    vector = mean_vectors(curves)
     table = pd.DataFrame(
         {
             "preferred_direction_rad": np.angle(vector),
             "mean_vector_length": np.abs(vector),
+            "tuning_width_deg": np.rad2deg(tuning_widths(curves)),
+            "rayleigh_p": rayleigh_test(rates * seconds, headings).p_value,
+            "stability": curve_stability(rates, headings),
             "drift_deg": np.rad2deg(_drift(rates, positions, headings)),
             "spatial_information": spatial_information(maps),
         },

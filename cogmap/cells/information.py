@@ -45,6 +45,5 @@ def selectivity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
 def _gain(maps: RateMaps) -> tuple[Float[np.ndarray, "bins"], Float[np.ndarray, "cells bins"]]:
     """Occupancy as a probability and rates over their mean, in the visited bins."""
     occupancy = maps.occupancy[maps.visited] / maps.occupancy.sum()
-    rates = maps.rates[:, maps.visited]
-    mean = np.sum(occupancy * rates, axis=1, keepdims=True)
-    return occupancy, ratio(rates, mean)
+    mean = np.sum(occupancy * maps.patterns, axis=1, keepdims=True)
+    return occupancy, ratio(maps.patterns, mean)

@@ -34,7 +34,19 @@ class RateMaps:
     @property
     def bin_area(self) -> float:
         """The area of one bin in m²."""
-        return float((self.edges.x[1] - self.edges.x[0]) * (self.edges.y[1] - self.edges.y[0]))
+        return self.edges.side**2
+
+    @property
+    def patterns(self) -> Float[np.ndarray, "cells bins"]:
+        """Rates in Hz in the visited bins alone: the population vector of each."""
+        known: np.ndarray = self.rates[:, self.visited]
+        return known
+
+    @property
+    def places(self) -> Float[np.ndarray, "bins 2"]:
+        """Where the bins of `patterns` are centred, m."""
+        x, y = np.meshgrid(*self.edges.centres)
+        return np.stack([x[self.visited], y[self.visited]], axis=1)
 
     def of_cells(self, cells: int) -> RateMaps:
         """Give these maps back when they are of so many cells.

@@ -8,9 +8,11 @@ from jaxtyping import Float
 
 from cogmap.cells.bins import heading_bin, means_by_bin
 from cogmap.cells.checks import check_samples
+from cogmap.cells.coherence import coherence
 from cogmap.cells.fields import PlaceFields, place_fields
 from cogmap.cells.information import selectivity, sparsity, spatial_information
 from cogmap.cells.maps import RateMaps, rate_maps
+from cogmap.cells.stability import map_stability
 from cogmap.cells.tuning import mean_vectors
 
 DIRECTION_BINS = 12
@@ -47,6 +49,7 @@ def place_statistics(
     pandas.DataFrame
         `peak_rate_hz` of the map, `mean_rate_hz` over the views, `fields`, `field_area_m2` and `centre_x_m`,
         `centre_y_m` of the largest field, `spatial_information` (bit/spike), `sparsity`, `selectivity`,
+        `coherence` (of the map without smoothing), `stability` (correlation of the maps of both halves),
         `in_field_direction_vector` (length of the mean vector over the views inside the fields, 12
         occupancy-normalised bins), `passing`. NaN where a silent cell or one without a field has no value.
 
@@ -58,6 +61,8 @@ def place_statistics(
     check_samples(rates, positions=positions, headings=headings)
     maps = rate_maps(rates, positions) if maps is None else maps.of_cells(rates.shape[1])
     fields = place_fields(maps)
+    edges = maps.edges
+    unsmoothed = rate_maps(rates, positions, edges.side, 0.0, edges=edges, visited=maps.visited)
     table = pd.DataFrame(
         {
             "peak_rate_hz": np.nanmax(maps.rates, axis=(1, 2)),
@@ -69,6 +74,8 @@ def place_statistics(
             "spatial_information": spatial_information(maps),
             "sparsity": sparsity(maps),
             "selectivity": selectivity(maps),
+            "coherence": coherence(unsmoothed),
+            "stability": map_stability(rates, positions, edges),
             "in_field_direction_vector": _in_field_vectors(rates, positions, headings, maps, fields),
         },
         index=pd.RangeIndex(rates.shape[1], name="cell"),

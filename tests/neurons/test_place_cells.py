@@ -4,7 +4,7 @@ import torch
 from scipy.stats import multivariate_normal
 from torch import Tensor
 
-from neurons.place_cells import FLATNESS, PEAK, PlaceCells
+from neurons.place_cells import BLOCK, FLATNESS, PEAK, PlaceCells
 
 
 def smells(count: int, stretch: tuple[float, float] = (1.0, 1.0), seed: int = 0) -> Tensor:
@@ -45,6 +45,25 @@ def test_tuning_same_as_scipys_gaussian() -> None:
         bell = multivariate_normal(layer.centres[unit].double().numpy(), covariance + flat * np.eye(2))
         trusted = PEAK * bell.pdf(probes.double().numpy()) / bell.pdf(bell.mean)
         np.testing.assert_allclose(rates[:, unit], trusted, atol=1e-3)
+
+
+def test_tuning_far_from_the_origin_is_as_exact_as_doubles() -> None:
+    odours = 0.1 * torch.randn(2 * BLOCK + 7, 3, generator=torch.Generator().manual_seed(0)) - 30
+    layer = grown(20, odours)
+    doubled = PlaceCells(20, 1, 3).double()
+    doubled.load_state_dict(layer.state_dict())
+    deviation = odours.double()[:, None] - doubled.centres
+    flat = FLATNESS / 3 * torch.einsum("coo->c", doubled.covariances)[:, None, None] * torch.eye(3)
+    exponent = torch.einsum("nco,cop,ncp->nc", deviation, (doubled.covariances + flat).inverse(), deviation)
+    torch.testing.assert_close(
+        layer.tuning(odours).double(), PEAK * torch.exp(-exponent / 2), atol=1e-4, rtol=0
+    )
+
+
+def test_a_strange_smell_excites_nothing_and_leaves_no_subnormal_rate() -> None:
+    rates = grown(20, smells(500)).tuning(smells(10) + 1e3)
+    assert (rates < 1e-19).all()
+    assert (rates > torch.finfo(torch.float32).tiny).all()
 
 
 def test_six_units_learn_from_one_smell() -> None:

@@ -4,7 +4,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from cogmap.cells.bins import BinEdges, bin_edges, heading_bin, means_by_bin, sums_by_bin
+from cogmap.cells.bins import (
+    BinEdges,
+    bin_edges,
+    heading_bin,
+    heading_centres,
+    means_by_bin,
+    sums_by_bin,
+)
 from cogmap.errors import CogmapError
 
 
@@ -79,6 +86,11 @@ def test_heading_bins_agree_with_numpy_and_wrap() -> None:
     np.testing.assert_array_equal(heading_bin(headings, 12), expected)
     np.testing.assert_array_equal(heading_bin(np.array([-np.pi, np.pi]), 12), [0, 0])
     np.testing.assert_array_equal(heading_bin(np.float32([-np.pi, np.pi, 0.01]), 36) % 35, [0, 0, 18])
+
+
+def test_heading_centres_are_the_middles_of_their_bins() -> None:
+    np.testing.assert_array_equal(heading_bin(heading_centres(7), 7), np.arange(7))
+    np.testing.assert_allclose(heading_centres(4), np.array([-3, -1, 1, 3]) * np.pi / 4)
 
 
 def test_sums_and_means_agree_with_scipy() -> None:

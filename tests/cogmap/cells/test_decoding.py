@@ -10,6 +10,7 @@ from cogmap.cells.decoding import (
     decode_positions,
     fit_heading_frame,
     heading_errors,
+    likeliest,
     position_errors,
 )
 from cogmap.errors import CogmapError
@@ -79,6 +80,14 @@ def test_errors_are_signed_and_wrapped() -> None:
     np.testing.assert_allclose(errors, [6 - 2 * np.pi, 2 * np.pi - 6])
 
 
+def test_likeliest_bin_of_each_view() -> None:
+    scores = np.array([[0.1, 0.7, 0.2], [np.nan, -3.0, np.nan], [np.nan] * 3, [5.0, np.nan, -np.inf]])
+    places = np.array([[0.0, 1], [2, 3], [4, 5]])
+    expected = [[2, 3], [2, 3], [np.nan, np.nan], [0, 1]]
+    np.testing.assert_array_equal(likeliest(scores, places), expected)
+    np.testing.assert_array_equal(likeliest(scores, places[:, 0]), np.array(expected)[:, 0])
+
+
 def test_bad_input_is_refused(wander: Callable) -> None:
     train, headings = wander(10)
     with pytest.raises(CogmapError, match="odours is not finite in 10"):
@@ -87,6 +96,8 @@ def test_bad_input_is_refused(wander: Callable) -> None:
         decode_positions(smell(train) * np.float32(np.nan), train, smell(train))
     with pytest.raises(CogmapError, match="3 training views; give at least 4"):
         decode_positions(smell(train)[:3], train[:3], smell(train))
+    with pytest.raises(CogmapError, match="centres is not finite"):
+        likeliest(np.ones((2, 3)), np.full(3, np.nan))
     with pytest.raises(CogmapError, match="phase is not finite"):
         fit_heading_frame(headings * np.nan, headings)
     with pytest.raises(CogmapError, match="headings is not finite"):

@@ -2,6 +2,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from neurospatial import Environment
+from neurospatial.encoding.spatial import detect_place_fields
 from scipy import ndimage
 
 from cogmap.cells.bins import BinEdges
@@ -26,6 +28,22 @@ def test_area_and_centre_of_a_gaussian_cell(wander: Callable, bump: Callable) ->
     variance = 0.3**2 + 0.15**2 + 0.1**2 / 12
     np.testing.assert_allclose(fields.area, -2 * np.pi * variance * np.log(0.3), rtol=0.05)
     np.testing.assert_allclose(fields.centre, [[0.3, -0.2]], atol=0.02)
+
+
+def test_single_fields_agree_with_neurospatial(wander: Callable, bump: Callable) -> None:
+    positions, _ = wander(8000)
+    rng = np.random.default_rng(0)
+    centres, widths = rng.uniform([-1.8, -1.3], [1.8, 1.3], (20, 2)), rng.uniform(0.1, 0.4, 20)
+    cells = zip(centres, widths, strict=True)
+    maps = rate_maps(np.stack([bump(positions, tuple(c), w) for c, w in cells], axis=1), positions)
+    fields = place_fields(maps)
+    # neurospatial's first axis is x.
+    room = Environment.from_grid_mask(maps.visited.T, tuple(maps.edges))
+    for rates, mask in zip(maps.rates, fields.masks, strict=True):
+        (trusted,) = detect_place_fields(
+            room, rates.T[maps.visited.T], threshold=0.3, min_size=5, detect_subfields=False
+        ).fields
+        np.testing.assert_array_equal(np.flatnonzero(mask.T[maps.visited.T]), np.sort(trusted))
 
 
 def test_two_fields_are_labelled_from_the_largest(wander: Callable, bump: Callable) -> None:

@@ -9,6 +9,7 @@ from scipy import special
 
 from cogmap.cells.heading import heading_statistics
 from cogmap.cells.maps import rate_maps
+from cogmap.cells.rayleigh import rayleigh_test
 from cogmap.errors import CogmapError
 
 
@@ -50,6 +51,35 @@ def test_information(table: pd.DataFrame) -> None:
     assert table.loc["heading", "spatial_information"] < 0.1
     assert table.loc["placed", "spatial_information"] > 0.5
     assert table.loc["placed", "drift_deg"] < 15
+
+
+def test_width_test_and_stability_of_a_von_mises_cell(table: pd.DataFrame) -> None:
+    width = np.rad2deg(2 * np.arccos(1 - np.log(2) / 4))
+    assert table.loc["heading", "tuning_width_deg"] == pytest.approx(width, abs=1.5)
+    assert np.isnan(table.loc["uniform", "tuning_width_deg"])
+    assert table.loc["heading", "rayleigh_p"] < 1e-9
+    assert table.loc["uniform", "rayleigh_p"] == pytest.approx(1, abs=0.01)
+    assert table.loc["heading", "stability"] > 0.99
+    assert np.isnan(table.loc["uniform", "stability"])
+
+
+def test_rayleigh_counts_the_spikes_that_the_rates_make(wander: Callable) -> None:
+    positions, headings = wander(3000)
+    rates = np.random.default_rng(0).poisson(0.02, (3000, 4)) / 0.1
+    table = heading_statistics(rates, positions, headings, seconds=0.1)
+    expected = rayleigh_test(np.rint(rates * 0.1), headings).p_value
+    np.testing.assert_allclose(table["rayleigh_p"], expected)
+    with pytest.raises(CogmapError, match="a view lasts 0"):
+        heading_statistics(rates, positions, headings, seconds=0.0)
+
+
+def test_a_population_is_measured_like_its_cells(wander: Callable) -> None:
+    positions, headings = wander(500)
+    rates = np.random.default_rng(0).gamma(0.5, 4, (500, 6))
+    table = heading_statistics(rates, positions, headings)
+    for cell in range(6):
+        alone = heading_statistics(rates[:, [cell]], positions, headings)
+        pd.testing.assert_frame_equal(alone.set_axis([cell]), table.iloc[[cell]], check_names=False)
 
 
 def test_silent_cell_is_unknown(table: pd.DataFrame) -> None:

@@ -1,8 +1,12 @@
 from collections.abc import Callable
 
 import numpy as np
+import pynapple as nap
+import spatial_maps
+import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from neurospatial.encoding import _metrics as neurospatial
 from scipy import integrate, stats
 
 from cogmap.cells.information import selectivity, sparsity, spatial_information
@@ -40,6 +44,41 @@ def test_is_the_divergence_of_spikes_from_occupancy(wander: Callable) -> None:
     p = maps.occupancy[maps.visited]
     for cell, information in enumerate(spatial_information(maps)):
         np.testing.assert_allclose(information, stats.entropy(p * maps[cell][maps.visited], p, base=2))
+
+
+def test_agrees_with_pynapple_neurospatial_and_spatial_maps(wander: Callable) -> None:
+    positions, _ = wander(800)
+    rates = np.random.default_rng(2).gamma(0.3, 5, (800, 5))
+    rates[positions[:, 0] > 0] = 0
+    maps = rate_maps(rates, positions, smoothing=0.0)
+    information, part, peak = (measure(maps) for measure in (spatial_information, sparsity, selectivity))
+    curves = xr.DataArray(
+        maps.rates,
+        dims=("unit", "y", "x"),
+        coords={"unit": np.arange(5)},
+        attrs={
+            "occupancy": maps.occupancy,
+            "rates": np.nansum(maps.rates * maps.occupancy, axis=(1, 2)) / 800,
+        },
+    )
+    np.testing.assert_allclose(information, nap.compute_mutual_information(curves)["bits/spike"])
+    p = maps.occupancy / maps.occupancy.sum()
+    for cell, rate in enumerate(maps.rates):
+        trusted = (
+            neurospatial.spatial_information(rate.ravel(), p.ravel()),
+            neurospatial.sparsity(rate.ravel(), p.ravel()),
+            neurospatial.selectivity(rate.ravel(), p.ravel()),
+        )
+        np.testing.assert_allclose((information[cell], part[cell], peak[cell]), trusted)
+        # It takes the logarithm of zero.
+        some = np.where(rate > 0, rate, np.nan)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            trusted = (
+                spatial_maps.information_specificity(some, p),
+                spatial_maps.sparsity(some, p),
+                spatial_maps.selectivity(some, p),
+            )
+        np.testing.assert_allclose((information[cell], part[cell], peak[cell]), trusted)
 
 
 def test_firing_in_one_of_n_bins_is_log_n() -> None:

@@ -1,10 +1,12 @@
 from collections.abc import Callable
 
 import numpy as np
+import pynapple as nap
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import ndimage
+from spatial_maps import SpatialMap
 
 from cogmap.cells.bins import BinEdges, bin_edges
 from cogmap.cells.maps import rate_maps
@@ -24,6 +26,38 @@ def test_agrees_with_a_histogram_smoothed_cell_by_cell(wander: Callable) -> None
         expected = ndimage.gaussian_filter(spikes, 1.5, mode="constant") / occupancy
         np.testing.assert_allclose(maps[cell][maps.visited], expected[maps.visited])
     assert maps.visited[1:-1, 1:-1].all()
+
+
+def test_agrees_with_spatial_maps(wander: Callable) -> None:
+    positions, _ = wander(3000)
+    times, counts = np.arange(3000.0), np.random.default_rng(0).poisson(1, 3000)
+    maps = rate_maps(counts[:, None].astype(float), positions)
+    peer = SpatialMap(smoothing=0.15, box_size=[3.6, 2.6], bin_size=0.1)
+    expected = peer.rate_map(*(positions + np.array([1.8, 1.3])).T, times, np.repeat(times, counts))
+    known = ~np.isnan(expected).T
+    # It cuts its Gaussian off at 8 σ, ours ends at 4 σ.
+    np.testing.assert_allclose(maps[0][known], expected.T[known], rtol=1e-3)
+
+
+def test_agrees_with_pynapple(wander: Callable) -> None:
+    positions, _ = wander(3000)
+    times, counts = np.arange(3000.0), np.random.default_rng(0).poisson(1, (3000, 2))
+    spikes = nap.TsGroup({cell: nap.Ts(np.repeat(times, counts[:, cell])) for cell in range(2)})
+    maps = rate_maps(counts.astype(float), positions, smoothing=0.0)
+    curves = nap.compute_tuning_curves(
+        spikes, nap.TsdFrame(times, positions), bins=list(maps.edges), epochs=nap.IntervalSet(-0.5, 2999.5)
+    )
+    np.testing.assert_array_equal(maps.occupancy, curves.attrs["occupancy"].T)
+    np.testing.assert_allclose(maps, curves.to_numpy().transpose(0, 2, 1))
+
+
+def test_patterns_are_the_visited_bins_at_their_places(wander: Callable) -> None:
+    positions, headings = wander(400)
+    maps = rate_maps(np.stack([headings + 4, positions[:, 0] + 2], axis=1), positions, smoothing=0.0)
+    index = maps.edges.bin_of(maps.places)
+    assert len(index) == maps.visited.sum() < maps.visited.size
+    np.testing.assert_array_equal(maps.patterns, maps.rates.reshape(2, -1)[:, index])
+    np.testing.assert_allclose(maps.patterns[1] - 2, maps.places[:, 0], atol=0.05)
 
 
 def test_width_of_a_gaussian_cell_grows_by_the_smoothing(bump: Callable) -> None:

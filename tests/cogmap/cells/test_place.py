@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
+from cogmap.cells.coherence import coherence
 from cogmap.cells.fields import place_fields
 from cogmap.cells.information import spatial_information
 from cogmap.cells.maps import rate_maps
@@ -52,6 +53,32 @@ def test_information(table: pd.DataFrame) -> None:
     assert table.loc["heading", "spatial_information"] < 0.1
     assert table.loc["broad", "sparsity"] > 0.8
     assert table.loc["place", "selectivity"] > 5
+
+
+def test_coherence_and_stability(table: pd.DataFrame) -> None:
+    assert table.loc["place", ["coherence", "stability"]].min() > 0.95
+    assert table.loc[["uniform", "silent"], ["coherence", "stability"]].isna().all(axis=None)
+    assert table.loc["noise", ["coherence", "stability"]].abs().max() < 0.2
+
+
+def test_coherence_is_that_of_the_map_without_smoothing(wander: Callable) -> None:
+    positions, headings = wander(1500)
+    rates = np.random.default_rng(0).gamma(0.5, 4, (1500, 3))
+    raw = rate_maps(rates, positions, smoothing=0.0)
+    measured = place_statistics(rates, positions, headings)["coherence"]
+    np.testing.assert_allclose(measured, coherence(raw))
+    wide = place_statistics(rates, positions, headings, maps=rate_maps(rates, positions, 0.2, 0.3))
+    np.testing.assert_allclose(wide["coherence"], coherence(rate_maps(rates, positions, 0.2, 0.0)))
+
+
+def test_a_population_is_measured_like_its_cells(wander: Callable, bump: Callable) -> None:
+    positions, headings = wander(800)
+    centres = np.random.default_rng(0).uniform([-1.8, -1.3], [1.8, 1.3], (6, 2))
+    rates = np.stack([bump(positions, tuple(centre)) for centre in centres], axis=1)
+    table = place_statistics(rates, positions, headings)
+    for cell in range(6):
+        alone = place_statistics(rates[:, [cell]], positions, headings)
+        pd.testing.assert_frame_equal(alone.set_axis([cell]), table.iloc[[cell]], check_names=False)
 
 
 def test_direction_in_the_field(table: pd.DataFrame) -> None:
