@@ -68,10 +68,16 @@ class PlaceCells(nn.Module):
 
     def tuning(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
         """Rates in Hz that smell alone demands."""
+        return PEAK * torch.exp(-0.5 * self._squared_distance(log_odours))
+
+    def share(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
+        """Give each cell's part of the rate of all, r_i / Σ r, also where every rate is next to nothing."""
+        return torch.softmax(-0.5 * self._squared_distance(log_odours), dim=1)
+
+    def _squared_distance(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
         odorants = self.centres.shape[1]
         mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1)
         floor = FLATNESS * mean[:, None, None] * torch.eye(odorants)
         precision = torch.linalg.inv(self.covariances + floor)
         deviation = log_odours[:, None] - self.centres
-        squared = torch.einsum("nco,cop,ncp->nc", deviation, precision, deviation)
-        return PEAK * torch.exp(-0.5 * squared)
+        return torch.einsum("nco,cop,ncp->nc", deviation, precision, deviation)
