@@ -20,8 +20,8 @@ class Activity:
     odour
         Log concentration of each odorant, recalled from sight.
     position
-        In the map's own metric frame, a similarity (with a mirror where `phase` has one) away from metres. NaN
-        when the walk has taught no metric map.
+        In the map's own metric frame, a similarity (with a mirror where `phase` has one) away from metres.
+        NaN when the walk has taught no metric map.
     """
 
     place: Float[np.ndarray, "views place_cells"]

@@ -32,8 +32,8 @@ class CognitiveMap:
 
     It is given images and concentrations and nothing else: no poses, no motor signals, no times. Afterwards
     sight alone tells the recalled smell (hence place) and the heading, through place cells and head-direction
-    cells. Where views come in the order of a walk, it also learns where places lie, as a metric map, and takes
-    a slow offset out of heading; shuffled views do no harm, but teach neither.
+    cells. Where views come in the order of a walk, it also learns where places lie, as a metric map, and
+    takes a slow offset out of heading; shuffled views do no harm, but teach neither.
 
     Parameters
     ----------

@@ -37,13 +37,13 @@ SIGNS = 0.995
 
 
 class Layers(nn.Module):
-    """Sanger code, charts, olfaction, recall, the two populations and the gauge, maturing one after the other.
+    """Sanger code, charts, olfaction, recall, two populations and a gauge, maturing one after the other.
 
     Each layer learns during its own critical period, and those before it are then fixed: first the code, then
     the charts; then each chart learns how smell changes across it; then the charts agree on a compass, the
-    cells share out what is recalled; from the order of views the gauge learns where places are and by how much
-    the compass is off there; and at last the cells' afferents from sight are learnt. From the third stage on, all
-    that is learnt are sums.
+    cells share out what is recalled; from the order of views the gauge learns where places are and by how
+    much the compass is off there; and at last the cells' afferents from sight are learnt. From the third
+    stage on, all that is learnt are sums.
 
     Parameters
     ----------

@@ -19,8 +19,9 @@ ROUNDS = 100
 BLOCK = 128
 """Consecutive displacements that fall to the same half of the evidence."""
 FORETOLD = 0.8
-"""Least share of the displacements of one half of a walk that the other foretells, in a map worth having:
-.92 to .98 in rooms, −.3 to −.1 in shuffled order."""
+"""Least share of the displacements of one half of a walk that the other half foretells, in a map worth having:
+.88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each other, whatever the
+headings do."""
 
 
 class Gauged(NamedTuple):
@@ -33,12 +34,12 @@ class Gauged(NamedTuple):
 
 
 class Gauge(nn.Module):
-    """Places get positions, and the compass an offset at each, so that views follow each other straight ahead.
+    """Places get positions, and the compass an offset at each, so that views follow each other ahead.
 
-    The place cells share a smell o out as w(o), Σ w = 1. A position is affine in each of them and an offset of
-    heading belongs to each, both as complex numbers:
+    The place cells share a smell o out as w(o), Σ w = 1. Each holds an affine map of its surroundings and an
+    offset of heading f_p, |f_p| = 1, both as complex numbers:
 
-        x(o) = Σ_p w_p (x_p + B_p (o − c_p)) = b(o)·β,        e^{iθ} = e^{iθ̂} f(o),        f(o) = Σ_p w_p f_p,        |f_p| = 1.
+        x(o) = Σ_p w_p (x_p + B_p (o − c_p)) = b(o)·β,        e^{iθ} = e^{iθ̂} f(o),  f(o) = Σ_p w_p f_p.
 
     Where a body looks it goes: for views t and t + 3 with no turn between them, v = b(o_{t+3}) − b(o_t) and u
     the mean of e^{iθ̂} on the way, v·β should be u f. With the sums S = Σ v vᵀ and D = Σ w ū vᵀ least squares
@@ -120,7 +121,7 @@ class Gauge(nn.Module):
     def settle(self) -> None:
         """Learn positions and offsets from the sums, if either half of the walk foretells the other."""
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
-        if min(half.count for half in halves) < len(self.offsets):
+        if min(half.pairs for half in halves) < len(self.offsets):
             return
         one, other = halves
         self.foretold = torch.tensor([one.foretold(*other.solve()), other.foretold(*one.solve())]).float()
@@ -133,25 +134,25 @@ class Gauge(nn.Module):
         """Say why nothing is learnt, or nothing when it is."""
         if self.foretold.isnan().any():
             return (
-                f"{int(self.counted[:, 1].sum())} of {int(self.seen)} views were come to straight ahead, too few "
-                "for a metric map; show it longer walks, in order"
+                f"{int(self.counted[:, 1].sum())} of {int(self.seen)} views were come to straight ahead, too "
+                "few for a metric map; show it longer walks, in order"
             )
-        if self.foretold.min() < FORETOLD:
+        share = float(self.foretold.min())
+        if share < FORETOLD:
             return (
-                f"one half of the walk foretells {float(self.foretold.min()):.2f} of the displacements of the "
-                f"other, less than {FORETOLD}: what follows a view does not lie ahead of it; show it views in "
-                "the order of a walk"
+                f"one half of the walk foretells {share:.2f} of the displacements of the other, less than "
+                f"{FORETOLD}: what follows a view does not lie ahead of it; show it longer walks, in order"
             )
         return ""
 
     def _evidence(self, halves: slice) -> "_Evidence":
-        power, count = self.counted[halves].sum(dim=0).tolist()
+        power, pairs = self.counted[halves].sum(dim=0).tolist()
         return _Evidence(
             self.spread[halves].double().sum(dim=0),
             torch.view_as_complex(self.ahead[halves].double().sum(dim=0)),
             self.shared[halves].double().sum(dim=0),
             power,
-            count,
+            pairs,
         )
 
 
@@ -162,7 +163,7 @@ class _Evidence(NamedTuple):
     ahead: Complex[Tensor, "cells features"]
     shared: Float[Tensor, "cells cells"]
     power: float
-    count: float
+    pairs: float
 
     def solve(self) -> tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]:
         """Give β and f."""

@@ -7,9 +7,12 @@ in rad.
 from cogmap.cells.bins import BinEdges, bin_edges
 from cogmap.cells.decoding import (
     HeadingFrame,
+    MapFrame,
     decode_positions,
     fit_heading_frame,
+    fit_map_frame,
     heading_errors,
+    place_map,
     position_errors,
 )
 from cogmap.cells.fields import PlaceFields, place_coverage, place_fields
@@ -22,16 +25,19 @@ from cogmap.cells.tuning import mean_vectors, tuning_curves
 __all__ = [
     "BinEdges",
     "HeadingFrame",
+    "MapFrame",
     "PlaceFields",
     "RateMaps",
     "bin_edges",
     "decode_positions",
     "fit_heading_frame",
+    "fit_map_frame",
     "heading_errors",
     "heading_statistics",
     "mean_vectors",
     "place_coverage",
     "place_fields",
+    "place_map",
     "place_statistics",
     "position_errors",
     "rate_maps",
