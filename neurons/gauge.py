@@ -19,9 +19,9 @@ ROUNDS = 100
 BLOCK = 128
 """Consecutive displacements that fall to the same half of the evidence."""
 FORETOLD = 0.8
-"""Least share of the displacements of one half of a walk that the other half foretells, in a map worth having:
-.88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each other, whatever the
-headings do."""
+"""Least share of the displacements of one half of a walk that the other half foretells, in a map worth
+having: .88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each other,
+whatever the headings do."""
 
 
 class Gauged(NamedTuple):
