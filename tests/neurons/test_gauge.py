@@ -153,7 +153,7 @@ def test_any_batches_will_do(cells: PlaceCells, batch: int) -> None:
 
 def test_sums_of_two_walks_add_up_when_a_jump_is_told(cells: PlaceCells) -> None:
     along = torch.stack([torch.linspace(0.1, 0.9, 2 * BLOCK), torch.full((2 * BLOCK,), 0.5)], dim=1)
-    one = other = Walk(along, torch.zeros(len(along)), smell(along))
+    one, other = (Walk(way, torch.zeros(len(way)), smell(way)) for way in (along, along.flip(0)))
     apart = [learn(cells, each, settle=False) for each in (one, other)]
     both = learn(cells, one, settle=False)
     both.jump()
