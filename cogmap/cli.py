@@ -286,6 +286,7 @@ def _learn(
             "charts": cmap.charts,
             "trusted": cmap.trusted_,
             "reason": cmap.reason_,
+            "metric_reason": cmap.metric_reason_,
             "seconds": cmap.seconds_,
         },
         as_json=as_json,
@@ -313,7 +314,8 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
     figures: dict[str, Any] = dict(
         score(seen, np.asarray(fresh.poses), train=(known, np.asarray(walk.poses)))
     )
-    _report({"trusted": grown.trusted_, "reason": grown.reason_, **figures}, as_json=as_json)
+    told = {"trusted": grown.trusted_, "reason": grown.reason_, "metric_reason": grown.metric_reason_}
+    _report({**told, **figures}, as_json=as_json)
 
 
 def _with_truth(path: Path) -> Recording:

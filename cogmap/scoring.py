@@ -9,7 +9,13 @@ from jaxtyping import Float
 
 from cogmap.cells.bins import bin_edges
 from cogmap.cells.checks import check_array
-from cogmap.cells.decoding import fit_heading_frame, heading_errors, position_errors
+from cogmap.cells.decoding import (
+    fit_heading_frame,
+    fit_map_frame,
+    heading_errors,
+    place_map,
+    position_errors,
+)
 from cogmap.cells.fields import place_coverage, place_fields
 from cogmap.cells.heading import heading_statistics
 from cogmap.cells.maps import rate_maps
@@ -36,6 +42,10 @@ class Perceived(Protocol):
     def odour(self) -> Float[np.ndarray, "views odorants"]:
         """Log concentration recalled."""
 
+    @property
+    def position(self) -> Float[np.ndarray, "views 2"]:
+        """In the map's own metric frame; NaN without one."""
+
 
 def score(
     activity: Perceived,
@@ -46,7 +56,8 @@ def score(
 ) -> dict[str, float]:
     """Every figure that activity gives, as one flat record.
 
-    Decoder and heading frame are fitted on the training views; errors and cells are measured on `activity`.
+    Decoder, heading frame and similarity are fitted on the training views; errors and cells are measured on
+    `activity`.
 
     Parameters
     ----------
@@ -63,7 +74,8 @@ def score(
     dict[str, float]
         `position_median_m`, `position_p95_m`, `heading_median_deg`, `heading_p95_deg`, `heading_resultant`,
         `place_cells_passing`, `place_coverage`, `heading_cells_passing`; cells as fractions of all columns,
-        the silent ones included.
+        the silent ones included. Where there is a metric map also `metric_map_r2`, the share of the variance
+        of (x, y) that it explains after one similarity, and `metric_map_median_m`, how far it is off.
 
     Raises
     ------
@@ -98,4 +110,20 @@ def score(
         "place_cells_passing": float(passing.mean()),
         "place_coverage": place_coverage(place_fields(place_maps), passing, edges.visited(room)),
         "heading_cells_passing": float(heading["passing"].mean()),
+        **_score_metric_map(activity.position, positions, (activity_train.position, poses_train[:, :2])),
+    }
+
+
+def _score_metric_map(
+    mapped: Float[np.ndarray, "views 2"],
+    positions: Float[np.ndarray, "views 2"],
+    train: tuple[Float[np.ndarray, "train 2"], Float[np.ndarray, "train 2"]],
+) -> dict[str, float]:
+    if np.isnan(mapped).all():
+        return {}
+    away = np.linalg.norm(place_map(mapped, fit_map_frame(*train)) - positions, axis=1)
+    spread = np.square(positions - positions.mean(axis=0)).sum()
+    return {
+        "metric_map_r2": float(1 - np.square(away).sum() / spread),
+        "metric_map_median_m": float(np.median(away)),
     }

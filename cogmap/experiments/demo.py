@@ -19,8 +19,10 @@ from arena import Arena, Body, Brownian, Camera, Recording, explore
 from cogmap.activity import Activity
 from cogmap.cells import (
     fit_heading_frame,
+    fit_map_frame,
     heading_errors,
     heading_statistics,
+    place_map,
     place_statistics,
     position_errors,
     rate_maps,
@@ -37,6 +39,7 @@ from cogmap.manifold.homology import Betti
 from cogmap.plots import (
     plot_barcodes,
     plot_compass,
+    plot_metric_map,
     plot_position,
     plot_rate_maps,
     plot_room,
@@ -143,6 +146,7 @@ def demo(
             "charts": charts,
             "trusted": cmap.trusted_,
             "reason": cmap.reason_,
+            "metric_reason": cmap.metric_reason_,
             **figures,
             **{f"betti_{name}": list(found.numbers) for name, found in bars.items()},
             "betti_votes": {name: list(found.votes) for name, found in bars.items()},
@@ -193,6 +197,9 @@ def _draw(folder: Path, room: Arena, learnt: Outing, fresh: Outing, bars: dict[s
         ),
         "barcodes": plot_barcodes(bars),
     }
+    if not np.isnan(rates.position).all():
+        laid = place_map(rates.position, fit_map_frame(learnt.activity.position, known))
+        drawings["metric_map"] = plot_metric_map(laid, positions)
     for name, figure in drawings.items():
         figure.savefig(folder / f"{name}.png")
 

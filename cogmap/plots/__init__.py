@@ -7,6 +7,7 @@ from cogmap.plots.embedding import plot_embedding
 from cogmap.plots.heading_cells import plot_tuning_curves
 from cogmap.plots.likeness import plot_likeness
 from cogmap.plots.localisation import plot_localisation
+from cogmap.plots.metric_map import plot_metric_map
 from cogmap.plots.neighbours import plot_neighbours
 from cogmap.plots.place_cells import plot_rate_maps
 from cogmap.plots.position import plot_position
@@ -25,6 +26,7 @@ __all__ = [
     "plot_embedding",
     "plot_likeness",
     "plot_localisation",
+    "plot_metric_map",
     "plot_neighbours",
     "plot_position",
     "plot_quasi_metric",
