@@ -72,23 +72,29 @@ def _look(setting: Setting, room: Arena) -> _Seen:
     known, asked = _codes(np.asarray(walk.views), np.asarray(fresh.views), setting.seed)
     nearest = poses_of(walk)[nearest_points(known, 1, queries=asked).indices[:, 0]]
     poses = poses_of(fresh)
-    x0, y0, x1, y1 = room.bounds
-    opposite = np.array([x0 + x1, y0 + y1, np.pi]) + poses * [-1, -1, 1]
-    own, other = (
-        np.array([motion_distances(a[None], b[None])[0, 0] for a, b in zip(nearest, there, strict=True)])
-        for there in (poses, opposite)
-    )
+    opposite = _opposite(room, poses)
     columns = ["x_m", "y_m", "heading_rad"]
     table = pd.DataFrame(poses, columns=columns).join(
         pd.DataFrame(nearest, columns=[f"nearest_{name}" for name in columns])
     )
     first = np.stack([poses[0], opposite[0]])
     return _Seen(
-        nearest=table.assign(confused=other < own),
+        nearest=table.assign(confused=_apart(nearest, opposite) < _apart(nearest, poses)),
         shape=betti(known, seed=setting.seed),
         pair=strips.render(room, first),
         poses=first,
     )
+
+
+def _opposite(room: Arena, poses: Float[np.ndarray, "views 3"]) -> Float[np.ndarray, "views 3"]:
+    """Poses after half a turn about the middle of the room."""
+    x0, y0, x1, y1 = room.bounds
+    return np.array([x0 + x1, y0 + y1, np.pi]) + poses * [-1, -1, 1]
+
+
+def _apart(ours: Float[np.ndarray, "views 3"], theirs: Float[np.ndarray, "views 3"]) -> np.ndarray:
+    """How far each pose is from the one in the same row, m."""
+    return np.array([motion_distances(a[None], b[None])[0, 0] for a, b in zip(ours, theirs, strict=True)])
 
 
 def _codes(

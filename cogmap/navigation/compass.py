@@ -93,7 +93,8 @@ def common_north(
 
     .. math:: \sum_{ij} \rho\bigl(\Delta_{ij} - (\theta_i - \theta_j)\bigr) / \ell_{ij}^2
 
-    with a loss ρ that counts outliers less. Each connected piece has a north of its own.
+    with a loss ρ that counts outliers less. Each connected piece has a north of its own; the heading of a
+    view without edges is 0.
 
     Parameters
     ----------
@@ -105,12 +106,14 @@ def common_north(
         Δ, rad.
     """
     views, (rows, columns) = graph.shape[0], edges.T
+    headings = np.zeros(views)
+    if not len(edges):
+        return headings
     lengths = np.asarray(graph[rows, columns])
     signed = sp.csr_array((turned, (rows, columns)), shape=graph.shape)
     signed = sp.csr_array(signed - signed.T)
-    headings = np.zeros(views)
     tree = minimum_spanning_tree(graph)
-    seen = np.zeros(views, bool)
+    seen = np.diff(graph.indptr) == 0
     for root in range(views):
         if not seen[root]:
             order, before = breadth_first_order(tree, root, directed=False)
@@ -121,8 +124,8 @@ def common_north(
     index = np.arange(len(edges))
     signs = np.repeat([1.0, -1.0], len(edges))
     difference = sp.csr_array((signs, (np.tile(index, 2), edges.T.ravel())), (len(edges), views))
-    trust = 1 / np.square(lengths + 0.1 * np.median(lengths)) if len(lengths) else lengths
-    for _ in range(ROUNDS if len(edges) else 0):
+    trust = 1 / np.square(lengths + 0.1 * np.median(lengths))
+    for _ in range(ROUNDS):
         left = _wrapped(turned - difference @ headings)
         weighted = difference.T @ sp.diags_array(trust / (1 + np.square(left / OUTLIER)))
         matrix = sp.csr_array(weighted @ difference)

@@ -18,6 +18,7 @@ from cogmap.plots.style import BAD, GOOD, INK, SMALL, new_figure, tidy_room
 COLUMNS = 3
 ARROW = 0.2
 """Length of the arrow that points where the body looks, m."""
+MINE, THEIRS, START, GOAL = "visual roadmap", "OMPL's PRM", "start", "goal"
 
 
 def plot_routes(
@@ -59,11 +60,11 @@ def plot_routes(
             text.set_visible(False)
         _draw_route(axes, mine)
         if theirs is not None:
-            axes.plot(*theirs[:, :2].T, "--", color=BAD, linewidth=1.3, zorder=8, label="OMPL's PRM")
+            axes.plot(*theirs[:, :2].T, "--", color=BAD, linewidth=1.3, zorder=8, label=THEIRS)
         axes.set(xlim=(x0 - 0.1, x1 + 0.1), ylim=(y0 - 0.1, y1 + 0.1))
     if routes:
-        handles, labels = grid[0].get_legend_handles_labels()
-        known = {label: handle for handle, label in zip(handles, labels, strict=True) if label != "platform"}
+        drawn = [pair for axes in grid for pair in zip(*axes.get_legend_handles_labels(), strict=True)]
+        known = {label: handle for handle, label in drawn if label in (MINE, THEIRS, START, GOAL)}
         figure.legend(
             known.values(),
             known.keys(),
@@ -81,7 +82,7 @@ def _draw_route(axes: Axes, path: Float[np.ndarray, "steps 3"]) -> None:
     outline = shapely.get_coordinates(swept.exterior)
     axes.add_patch(Polygon(outline, facecolor=GOOD, alpha=0.15, linewidth=0, zorder=1.5))
     x, y, heading = path.T
-    axes.plot(x, y, color=GOOD, linewidth=1.3, zorder=8, label="visual roadmap")
+    axes.plot(x, y, color=GOOD, linewidth=1.3, zorder=8, label=MINE)
     axes.quiver(
         x,
         y,
@@ -94,5 +95,5 @@ def _draw_route(axes: Axes, path: Float[np.ndarray, "steps 3"]) -> None:
         width=0.005,
         zorder=8.5,
     )
-    axes.plot(*path[0, :2], "o", color=INK, markersize=7, zorder=9, linestyle="none", label="start")
-    axes.plot(*path[-1, :2], "s", color=INK, markersize=7, zorder=9, linestyle="none", label="goal")
+    axes.plot(*path[0, :2], "o", color=INK, markersize=7, zorder=9, linestyle="none", label=START)
+    axes.plot(*path[-1, :2], "s", color=INK, markersize=7, zorder=9, linestyle="none", label=GOAL)

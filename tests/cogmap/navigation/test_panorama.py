@@ -53,6 +53,27 @@ def test_features_are_near_where_poses_are_also_of_fresh_views() -> None:
     np.testing.assert_allclose(code.transform(walk.views[:5]), known[:5], atol=0.1)
 
 
+def test_a_coarse_grid_of_views_agrees_on_north() -> None:
+    room, rng = Arena.load("furnished"), np.random.default_rng(0)
+    grid = np.stack(np.meshgrid(np.arange(-1.75, 1.8, 0.25), np.arange(-1.25, 1.3, 0.25)), axis=-1)
+    poses = np.column_stack([grid.reshape(-1, 2), rng.uniform(-np.pi, np.pi, grid[..., 0].size)])
+    code = PanoramaCode(turning=0.5, neighbours=8)
+    known = code.fit_transform(CAMERA.render(room, poses))
+    north = np.angle(np.exp(1j * (code.headings_ - poses[:, 2])).mean())
+    wrong = off(code.headings_ - poses[:, 2] - north)
+    assert np.median(wrong) < 2
+    assert wrong.max() < 8
+    ahead = np.column_stack([np.cos(code.headings_), np.sin(code.headings_)])
+    np.testing.assert_allclose(known[:, -2:], 0.5 * ahead)
+    np.testing.assert_allclose(known[:, :-2].var(axis=0).sum(), 1)
+    moved = poses[::4] + rng.uniform([-0.1, -0.1, -3], [0.1, 0.1, 3], (len(poses[::4]), 3))
+    x, y = code.transform(CAMERA.render(room, moved))[:, -2:].T
+    np.testing.assert_allclose(np.hypot(x, y), 0.5)
+    fresh = off(np.arctan2(y, x) - moved[:, 2] - north)
+    assert np.median(fresh) < 2.5
+    assert np.percentile(fresh, 90) < 8
+
+
 @pytest.mark.parametrize("count", [1, 3])
 def test_one_view_alone_is_no_map(count: int) -> None:
     view = CAMERA.render(ROOM, np.array([[0.0, 1.0, 0.3]]))

@@ -4,6 +4,7 @@ import networkx as nx
 import numpy as np
 import pytest
 import scipy.sparse as sp
+import shapely
 
 from cogmap.errors import CogmapError
 from cogmap.manifold.neighbours import neighbour_graph
@@ -23,6 +24,28 @@ def test_it_plans_what_networkx_plans() -> None:
         assert route[-1] == goal
         cost = sum(graph[a, b] for a, b in pairwise(route))
         assert cost == pytest.approx(nx.dijkstra_path_length(theirs, start, goal))
+
+
+def test_views_that_never_enter_obstacles_lead_around_them() -> None:
+    """Features are a curved image of (x, y) around two boxes, told apart by nothing but the gap in them."""
+    rng = np.random.default_rng(0)
+    boxes = shapely.MultiPolygon([shapely.box(-1.2, -0.5, -0.4, 1.6), shapely.box(0.4, -1.6, 1.2, 0.5)])
+    places = rng.uniform([-2, -1.6], [2, 1.6], (4000, 2))
+    places = places[~shapely.contains_xy(boxes.buffer(0.1), *places.T)]
+    x, y = places.T
+    curved = np.column_stack([x, 0.5 * np.sin(2 * x) + y, 0.5 * np.cos(2 * y), 0.4 * np.sin(x + y)])
+    planner = VisualRoadmap(curved, neighbours=15)
+    # From left to right one must pass below the first box and above the second.
+    corners = np.array([[-1.2, -0.6], [-0.3, -0.6], [0.3, 0.6], [1.3, 0.6]])
+    for start, goal in (([-1.9, 1.2], [1.9, -1.2]), ([1.8, 0.0], [-1.8, 0.2])):
+        ends = [int(np.argmin(np.linalg.norm(places - end, axis=1))) for end in (start, goal)]
+        route = planner.plan(*curved[ends])
+        way = shapely.LineString(places[route])
+        assert [route[0], route[-1]] == ends
+        assert not way.intersects(boxes)
+        around = corners if start[0] < 0 else corners[::-1]
+        least = shapely.LineString([places[route[0]], *around, places[route[-1]]]).length
+        assert way.length < 1.25 * least
 
 
 def test_start_and_goal_are_taken_for_the_nearest_views() -> None:
