@@ -89,7 +89,8 @@ def _look(setting: Setting, room: Arena) -> _Seen:
 def _opposite(room: Arena, poses: Float[np.ndarray, "views 3"]) -> Float[np.ndarray, "views 3"]:
     """Poses after half a turn about the middle of the room."""
     x0, y0, x1, y1 = room.bounds
-    return np.array([x0 + x1, y0 + y1, np.pi]) + poses * [-1, -1, 1]
+    turned: np.ndarray = np.array([x0 + x1, y0 + y1, np.pi]) + poses * [-1, -1, 1]
+    return turned
 
 
 def _apart(ours: Float[np.ndarray, "views 3"], theirs: Float[np.ndarray, "views 3"]) -> np.ndarray:

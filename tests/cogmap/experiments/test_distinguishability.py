@@ -28,7 +28,7 @@ def test_half_a_turn_is_about_the_middle_of_the_room() -> None:
 
 
 def test_poses_of_the_same_row_are_compared() -> None:
-    theirs = POSES[::-1] + [0.1, 0.2, 3.0]
+    theirs = POSES[::-1] + np.array([0.1, 0.2, 3.0])
     np.testing.assert_allclose(_apart(POSES, theirs), np.diag(motion_distances(POSES, theirs)))
 
 

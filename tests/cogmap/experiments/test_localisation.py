@@ -27,7 +27,7 @@ def test_poses_are_the_weighted_sums_whatever_the_north(north: float, seed: int)
             for row in zip(indices, weights, strict=True)
         ]
     )
-    turned = poses + [0, 0, north]
+    turned = poses + np.array([0, 0, north])
     turned[:, 2] = np.angle(np.exp(1j * turned[:, 2]))
     read = interpolated_poses(Location(indices, weights), turned)
     np.testing.assert_allclose(read[:, :2], plain[:, :2], atol=1e-12)

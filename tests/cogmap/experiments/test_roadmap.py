@@ -70,7 +70,7 @@ def test_paths_are_scored_by_length_by_deviation_and_by_what_they_touch() -> Non
 
 
 def test_the_summary_counts_failures_as_failures_only() -> None:
-    bent = BELOW + [[0, 0, 0], [0, 1, 0], [0, 0, 0]]
+    bent = BELOW + np.array([[0, 0, 0], [0, 1, 0], [0, 0, 0]])
     scores = _scores(ROOM, [BELOW, bent, None, None], np.full(4, 3.0))
     found = _summary(scores.add_prefix("prm_"), "prm_")
     assert found["prm_success"] == 0.5

@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -36,9 +38,7 @@ def test_rows_are_ten_at_most_and_of_any_height(height: int, rows: int) -> None:
     flat = np.repeat(np.arange(height, dtype=np.uint8)[None, :, None, None], 62, axis=2).repeat(3, axis=3)
     found = strips(flat).grey[0, :, 0].real
     edges = np.linspace(0, height, rows + 1).astype(int)
-    np.testing.assert_allclose(
-        found, [np.arange(a, b).mean() for a, b in zip(edges, edges[1:], strict=False)]
-    )
+    np.testing.assert_allclose(found, [np.arange(a, b).mean() for a, b in pairwise(edges)])
 
 
 def test_blocks_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
