@@ -38,6 +38,15 @@ def test_blocks_of_pairs_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None
     np.testing.assert_allclose(turns(found, pairs), whole, atol=1e-6)
 
 
+@pytest.mark.parametrize("stripes", [1, 27])
+def test_the_broadest_and_the_finest_stripes_do_not_tell_the_turn(stripes: int) -> None:
+    """They stand still, or repeat too often to say which is which, and are as strong as all that turned."""
+    views = [panorama(AZIMUTHS + heading).astype(float) / 2 for heading in (0.9, 0.0)]
+    blurred = 60 * (1 + np.cos(stripes * AZIMUTHS))
+    both = np.stack([view + blurred[:, None] for view in views]).astype(np.uint8)
+    assert off(turns(strips(both), np.array([[0, 1]])) - 0.9)[0] < 5
+
+
 @pytest.mark.parametrize("step", [0.0, 1.0, -2.2])
 def test_a_step_past_what_is_near_on_one_side_is_no_turn(step: float) -> None:
     """Nearness is 0.15 on the left and 0.02 on the right, so that the mean flow is far from the turn."""
