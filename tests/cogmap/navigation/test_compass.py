@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from scipy.sparse.csgraph import minimum_spanning_tree
 
 from cogmap.manifold.neighbours import neighbour_graph
 from cogmap.navigation import compass
@@ -37,6 +38,15 @@ def test_blocks_of_pairs_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None
     np.testing.assert_allclose(turns(found, pairs), whole, atol=1e-6)
 
 
+@pytest.mark.parametrize("stripes", [1, 27])
+def test_the_broadest_and_the_finest_stripes_do_not_tell_the_turn(stripes: int) -> None:
+    """They stand still, or repeat too often to say which is which, and are as strong as all that turned."""
+    views = [panorama(AZIMUTHS + heading).astype(float) / 2 for heading in (0.9, 0.0)]
+    blurred = 60 * (1 + np.cos(stripes * AZIMUTHS))
+    both = np.stack([view + blurred[:, None] for view in views]).astype(np.uint8)
+    assert off(turns(strips(both), np.array([[0, 1]])) - 0.9)[0] < 5
+
+
 @pytest.mark.parametrize("step", [0.0, 1.0, -2.2])
 def test_a_step_past_what_is_near_on_one_side_is_no_turn(step: float) -> None:
     """Nearness is 0.15 on the left and 0.02 on the right, so that the mean flow is far from the turn."""
@@ -69,10 +79,12 @@ def test_north_is_common_where_turns_agree() -> None:
     assert off(found - headings - north).max() < 1e-2
 
 
-def test_outliers_count_less(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_outliers_count_less_beside_a_tree_that_has_none(monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng(2)
     graph, edges, headings = ring(300, rng)
-    turned = headings[edges[:, 0]] - headings[edges[:, 1]] + 0.5 * (rng.random(len(edges)) < 0.05)
+    tree = minimum_spanning_tree(graph)
+    beside = np.asarray((tree + tree.T)[edges[:, 0], edges[:, 1]]) == 0
+    turned = headings[edges[:, 0]] - headings[edges[:, 1]] + 0.5 * (beside & (rng.random(len(edges)) < 0.1))
 
     def errors() -> np.ndarray:
         found = common_north(graph, edges, turned)
