@@ -27,7 +27,7 @@ MARGIN = 0.03
 """By how much (m) the explorer keeps farther from everything than the body that plans must."""
 TOUCH = 1e-3
 """A body that reaches deeper (m) than this into an obstacle touches it."""
-ARRIVED = 0.5, np.deg2rad(45)
+ARRIVED = 0.3, np.deg2rad(40)
 """How near (m, rad) the first and last view must be to start and goal for a plan to be a success."""
 SHOWN = 6
 """Routes that are drawn."""

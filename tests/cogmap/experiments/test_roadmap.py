@@ -40,13 +40,13 @@ def test_a_room_without_such_pairs_is_refused() -> None:
 @pytest.mark.parametrize(
     ("end", "off", "there"),
     [
-        (0, [0.3, 0.3, 0.7], True),
-        (0, [0.45, 0.3, 0], False),
-        (-1, [0.45, 0.3, 0], False),
-        (-1, [0.3, 0.3, 0.78], True),
-        (-1, [0, 0, 0.8], False),
-        (0, [0, 0, -0.8], False),
-        (0, [0, 0, 2 * np.pi - 0.7], True),
+        (0, [0.2, 0.2, 0.6], True),
+        (0, [0.25, 0.2, 0], False),
+        (-1, [0.25, 0.2, 0], False),
+        (-1, [0.2, 0.2, 0.69], True),
+        (-1, [0, 0, 0.71], False),
+        (0, [0, 0, -0.71], False),
+        (0, [0, 0, 2 * np.pi - 0.6], True),
     ],
 )
 def test_a_plan_arrives_when_both_its_ends_are_near(end: int, off: list[float], there: bool) -> None:  # noqa: FBT001
