@@ -82,7 +82,7 @@ def test_when_ompl_fails_or_takes_too_long_it_is_said(monkeypatch: pytest.Monkey
         raise subprocess.TimeoutExpired("ompl", timeout)
 
     monkeypatch.setattr(subprocess, "run", fail)
-    with pytest.raises(CogmapError, match="OMPL failed with code 3: lost$"):
+    with pytest.raises(CogmapError, match=r"OMPL failed with code 3: lost$"):
         prm_paths(ROOM, np.zeros((1, 2, 3)), radius=0.2, milestones=5)
     monkeypatch.setattr(subprocess, "run", dawdle)
     with pytest.raises(CogmapError, match="not done after 7 s"):
