@@ -26,6 +26,13 @@ def test_a_turn_counts_half_a_metre_a_radian() -> None:
     assert found.maximum == pytest.approx(0.5, abs=0.01)
 
 
+def test_beyond_its_ends_a_path_deviates_from_the_ends() -> None:
+    away = path_deviation(np.array([[0.0, 0, 0], [-2, 0, 0], [1, 0, 0]]))
+    assert away.maximum == pytest.approx(2, abs=0.02)
+    assert away.mean == pytest.approx(4 / 5, abs=0.01)
+    assert path_deviation(np.array([[0.0, 0, 0], [3, 0, 0], [1, 0, 0]])).maximum == pytest.approx(2, abs=0.02)
+
+
 def test_a_full_turn_comes_back_to_nothing() -> None:
     path = np.column_stack([np.zeros((9, 2)), np.linspace(0, 2 * np.pi, 9)])
     assert path_deviation(path).maximum == pytest.approx(0.5 * np.pi, abs=0.01)

@@ -64,6 +64,15 @@ def test_words_are_compared_by_direction() -> None:
     assert (np.abs(np.diff(route)) <= 2).all()
 
 
+def test_words_of_any_number_lead_by_direction_and_not_by_nearness() -> None:
+    angles = np.linspace(0, 1.5, 16)
+    views = np.column_stack([np.cos(angles), np.sin(angles)]) * np.array([1.0, 9.0] * 8)[:, None]
+    planner = VisualRoadmap(views, neighbours=2, metric="cosine")
+    assert planner.nearest(8 * views[0]) == 0
+    assert planner.nearest(views[7] / 90) == 7
+    assert planner.plan(20 * views[2], views[13] / 20)[[0, -1]].tolist() == [2, 13]
+
+
 def test_equal_views_stay_joined() -> None:
     points = np.repeat(np.arange(10.0), 3)[:, None]
     route = VisualRoadmap(points, neighbours=2, power=2.0).plan(points[0], points[-1])
