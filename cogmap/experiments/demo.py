@@ -33,7 +33,7 @@ from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.experiments.homologies import homologies
 from cogmap.experiments.outputs import METRICS, result_folder
-from cogmap.experiments.setting import FRESH_SEED, poses_of
+from cogmap.experiments.setting import FRESH, FRESH_SEED, poses_of
 from cogmap.inputs import checked_count
 from cogmap.manifold.homology import Betti
 from cogmap.plots import (
@@ -47,9 +47,6 @@ from cogmap.plots import (
     plot_views,
 )
 from cogmap.scoring import score
-
-FRESH = 5000
-"""Views of the recording that scores are taken on, or as many as were learnt from when these are fewer."""
 
 
 @dataclass

@@ -10,15 +10,13 @@ from jaxtyping import Float
 
 from arena import Brownian, Camera
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import Setting, poses_of
+from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.manifold import BagOfWords
 from cogmap.navigation import Localiser, Location, image_codes
 from cogmap.plots import plot_localisation, plot_neighbours
 
 NOISE = 0.01
 """Of the camera on the fresh walk, as a share of the brightest grey level."""
-FRESH = 5000
-"""Views of the fresh walk, or as many as were learnt from when these are fewer."""
 QUERIES, NEIGHBOURS = 5, 5
 """Of Table 3."""
 

@@ -11,6 +11,8 @@ from jaxtyping import Float
 
 from arena import Arena, Body, Camera, Motion, Recording, explore
 
+FRESH = 5000
+"""Views of a fresh walk, or as many as were learnt from when these are fewer."""
 FRESH_SEED = 1000
 """Added to the seed for a fresh walk, on which what was learnt is scored."""
 _BODY = Body()
