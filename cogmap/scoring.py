@@ -6,6 +6,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
+from sklearn.metrics import r2_score
 
 from cogmap.cells.bins import bin_edges
 from cogmap.cells.checks import check_array
@@ -121,9 +122,8 @@ def _score_metric_map(
 ) -> dict[str, float]:
     if np.isnan(mapped).all():
         return {}
-    away = np.linalg.norm(place_map(mapped, fit_map_frame(*train)) - positions, axis=1)
-    spread = np.square(positions - positions.mean(axis=0)).sum()
+    laid = place_map(mapped, fit_map_frame(*train))
     return {
-        "metric_map_r2": float(1 - np.square(away).sum() / spread),
-        "metric_map_median_m": float(np.median(away)),
+        "metric_map_r2": float(r2_score(positions, laid, multioutput="variance_weighted")),
+        "metric_map_median_m": float(np.median(np.linalg.norm(laid - positions, axis=1))),
     }
