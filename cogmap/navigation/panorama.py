@@ -55,7 +55,7 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         one.
     """
 
-    def __init__(self, components: int = 40, *, turning: float = 0.8, neighbours: int = 20) -> None:
+    def __init__(self, components: int = 40, *, turning: float = 0.65, neighbours: int = 20) -> None:
         self.components = components
         self.turning = turning
         self.neighbours = neighbours
