@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from arena import Arena
 from cogmap.errors import CogmapError
@@ -34,6 +34,8 @@ class Experiment(NamedTuple):
     views: int
     elsewhere: bool = True
     """Whether it can be done in other rooms."""
+    takes: tuple[str, ...] = ()
+    """Which of `nose`, `motion`, `camera` and `map` may differ from its own."""
 
 
 EXPERIMENTS = {
@@ -55,6 +57,7 @@ def experiment(
     views: int | None = None,
     seed: int = 0,
     progress: bool = False,
+    **different: Any,
 ) -> Result:
     """Run an experiment by its name.
 
@@ -73,24 +76,31 @@ def experiment(
         Of walks, noise and all that is drawn.
     progress
         Whether to show progress on stderr.
+    different
+        `nose`, `motion`, `camera`, or parameters of `CognitiveMap` as `map`, where the experiment takes them.
 
     Raises
     ------
     ArenaError, CogmapError
-        For an unknown name, a room or counts that cannot work, a folder that holds something else.
+        For an unknown name, a room or counts that cannot work, something that the experiment does not take, a
+        folder that holds something else.
     """
     if name not in EXPERIMENTS:
         raise CogmapError(f"there is no experiment {name!r}; choose one of {', '.join(EXPERIMENTS)}")
     chosen = EXPERIMENTS[name]
     if room is not None and not chosen.elsewhere:
         raise CogmapError(f"{name} takes place in rooms of its own, not in {room.name!r}; leave the room out")
+    for what in different:
+        if what not in chosen.takes:
+            takes = ", ".join(chosen.takes) or "nothing but room, views and seed"
+            raise CogmapError(f"{name} does not take another {what}; it takes {takes}")
     views = chosen.views if views is None else checked_count("views", views, FEWEST)
     room = room or Arena.load(chosen.room)
     with (
         nullcontext() if out is None else result_folder(out) as folder,
         TemporaryDirectory(prefix="cogmap-") as scratch,
     ):
-        found = chosen.conduct(Setting(room, views, seed, progress, Path(scratch)))
+        found = chosen.conduct(Setting(room, views, seed, progress, Path(scratch), **different))
         about = {"experiment": name, "arena": room.name, "views": views, "seed": seed}
         result = Result({**about, **found.metrics}, found.tables, found.figures)
         if folder is not None:

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from arena import Arena
+from arena import Arena, Nose
 from cogmap import CogmapError
 from cogmap.experiments.catalogue import EXPERIMENTS, experiment
 
@@ -82,3 +82,8 @@ def test_another_folder_is_left_alone(tmp_path: Path) -> None:
     with pytest.raises(CogmapError, match="not the result of an experiment"):
         experiment("rotation", tmp_path, views=200)
     assert [file.name for file in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_what_an_experiment_does_not_take_is_refused() -> None:
+    with pytest.raises(CogmapError, match="rotation does not take another nose"):
+        experiment("rotation", views=200, nose=Nose(noise=0.3))

@@ -3,7 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arena import Arena, Brownian, Camera
+from arena import Arena, Brownian, Camera, Nose, Rotation
 from cogmap.experiments.setting import FRESH_SEED, Setting, poses_of
 
 ROOM = Arena.load("furnished")
@@ -38,3 +38,14 @@ def test_what_has_no_truth_is_refused() -> None:
     blind = Setting(ROOM, 20).explore(Brownian(), SMALL).without_truth()
     with pytest.raises(ValueError, match="has poses"):
         poses_of(blind)
+
+
+def test_what_the_setting_has_goes_before_what_the_experiment_has() -> None:
+    usual = Setting(ROOM, 30).explore(Brownian(), SMALL)
+    keen = Setting(ROOM, 30, nose=Nose(noise=0.0)).explore(Brownian(), SMALL)
+    clean = ROOM.odours.concentration(poses_of(keen)[:, :2])
+    np.testing.assert_allclose(keen.odours, clean, rtol=1e-5)
+    assert np.abs(np.log(usual.odours / clean)).max() > 0.1
+    spun = Setting(ROOM, 30, motion=Rotation(), camera=Camera.panoramic(72, 12)).explore(Brownian(), SMALL)
+    assert spun.views.shape[1:] == (12, 72, 3)
+    assert np.ptp(poses_of(spun)[:, :2]) < np.ptp(poses_of(usual)[:, :2])
