@@ -1,10 +1,11 @@
 """The cognitive map, its uses and its measures."""
 
-from cogmap import cells, manifold, plots
+from cogmap import cells, manifold, navigation, plots
 from cogmap.activity import Activity
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.manifold import BagOfWords, Betti, LandmarkIsomap, betti
+from cogmap.navigation import Localiser, VisualRoadmap
 from cogmap.scoring import score
 
 __all__ = [
@@ -14,9 +15,12 @@ __all__ = [
     "CogmapError",
     "CognitiveMap",
     "LandmarkIsomap",
+    "Localiser",
+    "VisualRoadmap",
     "betti",
     "cells",
     "manifold",
+    "navigation",
     "plots",
     "score",
 ]

@@ -19,12 +19,16 @@ class Activity:
         one. NaN in the dark and without a compass.
     odour
         Log concentration of each odorant, recalled from sight.
+    position
+        In the map's own metric frame, a similarity (with a mirror where `phase` has one) away from metres.
+        NaN when the walk has taught no metric map.
     """
 
     place: Float[np.ndarray, "views place_cells"]
     heading: Float[np.ndarray, "views heading_cells"]
     phase: Float[np.ndarray, "views"]
     odour: Float[np.ndarray, "views odorants"]
+    position: Float[np.ndarray, "views 2"]
 
     def __len__(self) -> int:
         return len(self.phase)

@@ -117,10 +117,12 @@ def _experiment(
 ) -> None:
     """Run an experiment of the paper: a table of metrics, figures, and the data behind them.
 
-    The experiments are rotation, cyclic, brownian, similarity, localisation, roadmap and distinguishability.
+    On the manifold of views: rotation, cyclic, brownian, similarity, localisation, roadmap and
+    distinguishability. On the cells: fusion, walks, sources, darkness, cue_rotation, goals and
+    directionality.
 
     Examples: `cogmap experiment rotation`; `cogmap experiment brownian --views 4000 --seed 1 --out walk`;
-    `cogmap experiment localisation --arena obstacles --json`.
+    `cogmap experiment fusion --arena pillar`; `cogmap experiment localisation --arena obstacles --json`.
 
     Parameters
     ----------
@@ -286,6 +288,7 @@ def _learn(
             "charts": cmap.charts,
             "trusted": cmap.trusted_,
             "reason": cmap.reason_,
+            "metric_reason": cmap.metric_reason_,
             "seconds": cmap.seconds_,
         },
         as_json=as_json,
@@ -313,7 +316,8 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
     figures: dict[str, Any] = dict(
         score(seen, np.asarray(fresh.poses), train=(known, np.asarray(walk.poses)))
     )
-    _report({"trusted": grown.trusted_, "reason": grown.reason_, **figures}, as_json=as_json)
+    told = {"trusted": grown.trusted_, "reason": grown.reason_, "metric_reason": grown.metric_reason_}
+    _report({**told, **figures}, as_json=as_json)
 
 
 def _with_truth(path: Path) -> Recording:

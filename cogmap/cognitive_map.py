@@ -18,7 +18,7 @@ from tqdm import tqdm
 from cogmap.activity import Activity
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_views, checked_count, log_odours
-from cogmap.layers import EPOCHS, Layers
+from cogmap.layers import EPOCHS, IN_ORDER, Layers
 from cogmap.storage import read_map, write_map
 from cogmap.threads import one_thread
 from neurons.retina import Retina
@@ -30,9 +30,10 @@ BATCH = 256
 class CognitiveMap:
     """A map of a place, learnt from sight and smell alone.
 
-    It is given images and concentrations, in any order, and nothing else: no poses, no motor signals, no
-    time. Afterwards sight alone tells the recalled smell (hence place) and the heading, through place cells
-    and head-direction cells.
+    It is given images and concentrations and nothing else: no poses, no motor signals, no times. Afterwards
+    sight alone tells the recalled smell (hence place) and the heading, through place cells and head-direction
+    cells. Where views come in the order of a walk, it also learns where places lie, as a metric map, and
+    takes a slow offset out of heading; shuffled views do no harm, but teach neither.
 
     Parameters
     ----------
@@ -54,6 +55,8 @@ class CognitiveMap:
         Whether the charts agree well enough for headings to be right.
     reason_
         Why not, in words; empty when trusted.
+    metric_reason_
+        Why there is no metric map, in words; empty when there is one.
     seconds_
         Time spent per stage of development in this process, s.
     view_shape_, odorants_
@@ -83,7 +86,9 @@ class CognitiveMap:
         self.seed = seed
 
     def fit(self, views: Any, odours: ArrayLike, *, progress: bool = False) -> CognitiveMap:
-        """Learn a map from scratch, as epochs of `partial_fit` over the views in random order.
+        """Learn a map from scratch, as epochs of `partial_fit` over the views.
+
+        Their order is random in every epoch but that of the gauge, which takes them as they are given.
 
         Parameters
         ----------
@@ -111,17 +116,26 @@ class CognitiveMap:
                 bar.set_description(stage)
                 started = time.perf_counter()
                 for _ in range(epochs):
-                    for rows in torch.from_numpy(order.permutation(views.shape[0])).split(BATCH):
+                    count = views.shape[0]
+                    epoch = np.arange(count) if stage == IN_ORDER else order.permutation(count)
+                    for rows in torch.from_numpy(epoch).split(BATCH):
                         self._layers.learn(strips[rows], smells[rows])
                     bar.update()
                 self.seconds_[stage] = time.perf_counter() - started
         return self
 
-    def partial_fit(self, views: Any, odours: ArrayLike) -> CognitiveMap:
+    def partial_fit(self, views: Any, odours: ArrayLike, *, jump: bool = False) -> CognitiveMap:
         """Learn from the next views of a stream.
 
         Time and memory per view do not depend on how many came before. See `cogmap.layers.Layers` for what is
         learnt when.
+
+        Parameters
+        ----------
+        views, odours
+            As for `fit`, in the order of a walk if there is one.
+        jump
+            Whether these views do not follow the last ones, as where another walk begins.
         """
         fresh = not hasattr(self, "_layers")
         check_views(views, None if fresh else self.view_shape_)
@@ -130,6 +144,8 @@ class CognitiveMap:
         )
         if fresh:
             self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=checked_count("epoch", self.epoch))
+        if jump:
+            self._layers.gauge.jump()
         with one_thread():
             for rows, strip in self._strips(views):
                 self._layers.learn(strip, smells[rows])
@@ -153,8 +169,7 @@ class CognitiveMap:
             if not self.trusted_:
                 warnings.warn(f"this map is not to be trusted: {self.reason_}", stacklevel=2)
             parts = [self._look(strip) for _, strip in self._strips(views)]
-        place, heading, phase, odour = (torch.cat(part).numpy() for part in zip(*parts, strict=True))
-        return Activity(place, heading, phase, odour)
+        return Activity(*(torch.cat(part).numpy() for part in zip(*parts, strict=True)))
 
     def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
         """Give the principal components of views, the space of the view manifold, float32."""
@@ -173,6 +188,12 @@ class CognitiveMap:
         """Why this map is not trusted; empty when it is."""
         self._check_grown()
         return self._layers.complain()
+
+    @property
+    def metric_reason_(self) -> str:
+        """Why this map tells no positions, whatever it tells of heading; empty when it does."""
+        self._check_grown()
+        return self._layers.complain_of_metric()
 
     @property
     def phase_eigenvalue_(self) -> float:
@@ -244,13 +265,16 @@ class CognitiveMap:
             rows = slice(start, start + BATCH)
             yield rows, self._retina(torch.from_numpy(np.ascontiguousarray(views[rows])))
 
-    def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Rates of both populations, heading and recalled odour."""
+    def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, ...]:
+        """Rates of both populations, heading, recalled odour and position."""
         layers = self._layers
         codes = layers.code(strips)
         excited = layers.recall.excite(layers.charts, codes)
-        phase, odour = layers.recall(layers.charts, codes, excited)
-        return layers.place.afferents(excited), layers.heading.afferents(excited), phase, odour
+        heading, odour = layers.recall(layers.charts, codes, excited)
+        position, offset = layers.gauge(layers.place, odour)
+        angle = heading + offset
+        phase = torch.atan2(angle.sin(), angle.cos())
+        return layers.place.afferents(excited), layers.heading.afferents(excited), phase, odour, position
 
     def _smell(self, odours: Float[Tensor, "views odorants"]) -> Activity:
         blind = np.full(len(odours), np.nan, np.float32)
@@ -259,4 +283,5 @@ class CognitiveMap:
             heading=np.repeat(blind[:, None], self.heading_cells, axis=1),
             phase=blind,
             odour=odours.numpy(),
+            position=self._layers.gauge(self._layers.place, odours).position.numpy(),
         )

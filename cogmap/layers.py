@@ -12,6 +12,7 @@ from torch import Tensor, nn
 from neurons.atlas import Atlas
 from neurons.charts import Charts
 from neurons.errors import NeuronsError
+from neurons.gauge import Gauge
 from neurons.heading_axis import heading_axes
 from neurons.heading_cells import HeadDirectionCells
 from neurons.oja import Sanger
@@ -20,9 +21,11 @@ from neurons.place_cells import PlaceCells
 from neurons.recall import Recall
 from neurons.synchronisation import synchronise
 
-EPOCHS = {"code": 4, "charts": 6, "olfaction": 1, "cells": 2, "afferents": 1}
+EPOCHS = {"code": 4, "charts": 6, "olfaction": 1, "cells": 2, "gauge": 1, "afferents": 1}
 """Stages of development, in order, and how many epochs of views each lasts."""
 STAGES = tuple(EPOCHS)
+IN_ORDER = "gauge"
+"""The stage that learns from the order of views."""
 WINNERS = (12, 4)
 """Charts that learn from a view, at the beginning and at the end of their stage."""
 SMELLING = 16
@@ -34,12 +37,13 @@ SIGNS = 0.995
 
 
 class Layers(nn.Module):
-    """Sanger code, charts, olfaction, recall and the two populations, maturing one after the other.
+    """Sanger code, charts, olfaction, recall, two populations and a gauge, maturing one after the other.
 
     Each layer learns during its own critical period, and those before it are then fixed: first the code, then
     the charts; then each chart learns how smell changes across it; then the charts agree on a compass, the
-    cells share out what is recalled, and at last their afferents from sight are learnt. From the third stage
-    on, all that is learnt are sums.
+    cells share out what is recalled; from the order of views the gauge learns where places are and by how
+    much the compass is off there; and at last the cells' afferents from sight are learnt. From the third
+    stage on, all that is learnt are sums.
 
     Parameters
     ----------
@@ -77,6 +81,7 @@ class Layers(nn.Module):
         self.recall = Recall(charts, components, odorants)
         self.place = PlaceCells(place_cells, charts, odorants)
         self.heading = HeadDirectionCells(heading_cells, charts, generator=generator)
+        self.gauge = Gauge(place_cells, odorants)
         self.register_buffer("age", torch.zeros((), dtype=torch.int64))
         self.register_buffer("matured", torch.zeros((), dtype=torch.int64))
         self.register_buffer("agreement", torch.full((2,), torch.nan))
@@ -116,9 +121,12 @@ class Layers(nn.Module):
             if stage == "cells":
                 self.place.compete(odours, memory=float(self.epoch))
                 self.heading.compete(headings, memory=float(self.epoch))
+            elif stage == "gauge":
+                self.gauge.partial_fit(self.place, odours, headings)
             else:
+                corrected = headings + self.gauge(self.place, odours).offset
                 self.place.afferents.partial_fit(excited, self.place.instruct(excited, odours))
-                self.heading.afferents.partial_fit(excited, self.heading.tuning(headings))
+                self.heading.afferents.partial_fit(excited, self.heading.tuning(corrected))
 
     def complain(self) -> str:
         """Say why this map cannot be trusted, or nothing when it can."""
@@ -135,6 +143,12 @@ class Layers(nn.Module):
         if signs < SIGNS:
             return f"its heading axes agree only to {signs:.3f}; use more charts or more odour sources"
         return ""
+
+    def complain_of_metric(self) -> str:
+        """Say why there is no metric map, or nothing when there is one."""
+        if self.stage != STAGES[-1]:
+            return f"this map is still in its {self.stage!r} stage; show it more views"
+        return self.gauge.complain()
 
     def _winners(self) -> int:
         """Charts that learn from the next view, falling geometrically over their stage."""
@@ -154,6 +168,7 @@ class Layers(nn.Module):
             elif entered == "cells":
                 self._orient()
             elif entered == "afferents":
+                self.gauge.settle()
                 edges = Atlas.of(self.charts.centres).edges
                 self.place.disambiguate(self.recall.intercepts, self.recall.phases, edges)
 

@@ -6,10 +6,17 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
+from sklearn.metrics import r2_score
 
 from cogmap.cells.bins import bin_edges
 from cogmap.cells.checks import check_array
-from cogmap.cells.decoding import fit_heading_frame, heading_errors, position_errors
+from cogmap.cells.decoding import (
+    fit_heading_frame,
+    fit_map_frame,
+    heading_errors,
+    place_map,
+    position_errors,
+)
 from cogmap.cells.fields import place_coverage, place_fields
 from cogmap.cells.heading import heading_statistics
 from cogmap.cells.maps import RateMaps, rate_maps
@@ -36,6 +43,10 @@ class Perceived(Protocol):
     def odour(self) -> Float[np.ndarray, "views odorants"]:
         """Log concentration recalled."""
 
+    @property
+    def position(self) -> Float[np.ndarray, "views 2"]:
+        """In the map's own metric frame; NaN without one."""
+
 
 def score(
     activity: Perceived,
@@ -46,7 +57,8 @@ def score(
 ) -> dict[str, float]:
     """Every figure that activity gives, as one flat record.
 
-    Decoder and heading frame are fitted on the training views; errors and cells are measured on `activity`.
+    Decoder, heading frame and similarity are fitted on the training views; errors and cells are measured on
+    `activity`.
 
     Parameters
     ----------
@@ -64,7 +76,9 @@ def score(
         `position_median_m`, `position_p95_m`, `heading_median_deg`, `heading_p95_deg`, `heading_resultant`,
         `place_cells_passing`, `place_coverage`, `heading_cells_passing`; cells as fractions of all columns,
         the silent ones included. Without a compass, when every phase is NaN, no heading cell passes and the
-        errors of heading are left out.
+        errors of heading are left out. Where there is a metric map also `metric_map_r2`, the share of the
+        variance of (x, y) that it explains after one similarity, and `metric_map_median_m`, how far it is
+        off.
 
     Raises
     ------
@@ -90,6 +104,7 @@ def score(
         "place_cells_passing": float(passing.mean()),
         "place_coverage": place_coverage(place_fields(place_maps), passing, edges.visited(room)),
         **_score_heading(activity, poses, (activity_train, poses_train), place_maps),
+        **_score_metric_map(activity.position, positions, (activity_train.position, poses_train[:, :2])),
     }
 
 
@@ -113,4 +128,18 @@ def _score_heading(
         "heading_p95_deg": float(np.percentile(turn_deg, 95)),
         "heading_resultant": float(abs(np.mean(np.exp(1j * turn)))),
         "heading_cells_passing": float(cells["passing"].mean()),
+    }
+
+
+def _score_metric_map(
+    mapped: Float[np.ndarray, "views 2"],
+    positions: Float[np.ndarray, "views 2"],
+    train: tuple[Float[np.ndarray, "train 2"], Float[np.ndarray, "train 2"]],
+) -> dict[str, float]:
+    if np.isnan(mapped).all():
+        return {}
+    laid = place_map(mapped, fit_map_frame(*train))
+    return {
+        "metric_map_r2": float(r2_score(positions, laid, multioutput="variance_weighted")),
+        "metric_map_median_m": float(np.median(np.linalg.norm(laid - positions, axis=1))),
     }

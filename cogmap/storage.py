@@ -13,7 +13,7 @@ from torch import Tensor
 
 from cogmap.errors import CogmapError
 
-VERSION = 1
+VERSION = 2
 _WEIGHTS, _SETTINGS = "weights.safetensors", "map.json"
 
 

@@ -1,5 +1,7 @@
 """Place cells: units that compete for recalled smells."""
 
+from collections.abc import Iterator
+
 import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
@@ -96,9 +98,24 @@ class PlaceCells(nn.Module):
         return here * self.tuning(log_odours)
 
     def tuning(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
-        """Rates in Hz that smell alone demands.
+        """Rates in Hz that smell alone demands."""
+        rates = log_odours.new_empty(len(log_odours), len(self.centres))
+        demanded = self._exponents(log_odours)
+        for exponent, evoked in zip(demanded, rates.split(BLOCK), strict=True):
+            torch.exp(exponent.to(rates.dtype).clamp_(FAINTEST, 0), out=evoked).mul_(PEAK)
+        return rates
 
-        With P = Σ⁻¹ the exponent is −½ P · (o oᵀ) + (P c) · o − ½ cᵀ P c, one matrix product on (o oᵀ, o).
+    def share(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
+        """Give each cell's part of the rate of all, r_i / Σ r, also where every rate is next to nothing."""
+        shares = log_odours.new_empty(len(log_odours), len(self.centres))
+        for exponent, part in zip(self._exponents(log_odours), shares.split(BLOCK), strict=True):
+            part.copy_(torch.softmax(exponent, dim=1))
+        return shares
+
+    def _exponents(self, log_odours: Float[Tensor, "views odorants"]) -> Iterator[Float[Tensor, "_ cells"]]:
+        """Give −½ (o − c)ᵀ P (o − c), P = Σ⁻¹, block by block.
+
+        It is −½ P · (o oᵀ) + (P c) · o − ½ cᵀ P c, one matrix product on (o oᵀ, o).
         """
         odorants = self.centres.shape[1]
         mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1).clamp(min=FINEST)
@@ -109,9 +126,6 @@ class PlaceCells(nn.Module):
         pull = torch.einsum("cop,cp->co", precision, centres)
         weights = torch.cat([-0.5 * precision.flatten(1), pull], dim=1).T
         height = -0.5 * (pull * centres).sum(dim=1)
-        rates = log_odours.new_empty(len(log_odours), len(centres))
-        for smells, evoked in zip(log_odours.double().split(BLOCK), rates.split(BLOCK), strict=True):
+        for smells in log_odours.double().split(BLOCK):
             pairs = (smells[:, :, None] * smells[:, None]).flatten(1)
-            exponent = torch.addmm(height, torch.cat([pairs, smells], dim=1), weights)
-            torch.exp(exponent.to(rates.dtype).clamp_(FAINTEST, 0), out=evoked).mul_(PEAK)
-        return rates
+            yield torch.addmm(height, torch.cat([pairs, smells], dim=1), weights)

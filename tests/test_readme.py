@@ -11,9 +11,11 @@ README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 def test_the_python_examples_run(capsys: pytest.CaptureFixture[str]) -> None:
     for example in re.findall(r"```python\n(.*?)```", README, re.DOTALL):
         exec(compile(example, "README.md", "exec"), {})  # noqa: S102
-    scores, numbers = capsys.readouterr().out.splitlines()
+    scores, numbers, coordinates = capsys.readouterr().out.splitlines()
     assert "heading_median_deg" in scores
     assert numbers == "(1, 1, 0)"
+    assert coordinates.startswith("(400, 2) 1 ")
+    assert coordinates.endswith(" 1.0")
 
 
 def test_every_command_and_picture_exists() -> None:

@@ -17,20 +17,23 @@ LEAST = {
     "place_cells_passing": 0.95,
     "heading_cells_passing": 0.95,
     "place_coverage": 0.95,
+    "metric_map_r2": 0.99,
 }
 MOST = {"position_median_m": 0.055, "position_p95_m": 0.15}
 ROOMS: dict[str, dict[str, Any]] = {
     "furnished": {
         "least": {**LEAST, "heading_resultant": 0.996},
-        "most": {**MOST, "heading_median_deg": 3.0, "heading_p95_deg": 9.0},
+        "most": {**MOST, "heading_median_deg": 2.5, "heading_p95_deg": 9.0},
         "betti": {"view_manifold": [1, 1, 0], "place": [1, 0, 0], "heading": [1, 1, 0]},
     },
     "pillar": {
         "least": {**LEAST, "heading_resultant": 0.993},
-        "most": {"heading_median_deg": 4.5, "heading_p95_deg": 12.0},
+        "most": {"heading_median_deg": 3.0, "heading_p95_deg": 12.0},
         "betti": {"view_manifold": [1, 2, 1], "place": [1, 1, 0], "heading": [1, 1, 0]},
     },
 }
+ROOMS["open_field"] = {**ROOMS["furnished"], "betti": {}}
+ROOMS["two_pillars"] = {**ROOMS["pillar"], "betti": {}}
 SECONDS, BYTES = 120, 4 * 1024**3
 
 

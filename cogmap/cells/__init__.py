@@ -9,10 +9,13 @@ from cogmap.cells.bins import BinEdges, bin_edges, heading_centres
 from cogmap.cells.coherence import coherence
 from cogmap.cells.decoding import (
     HeadingFrame,
+    MapFrame,
     decode_positions,
     fit_heading_frame,
+    fit_map_frame,
     heading_errors,
     likeliest,
+    place_map,
     position_errors,
 )
 from cogmap.cells.fields import PlaceFields, place_coverage, place_fields
@@ -30,6 +33,7 @@ from cogmap.cells.tuning import mean_vectors, tuning_curves, tuning_widths
 __all__ = [
     "BinEdges",
     "HeadingFrame",
+    "MapFrame",
     "PlaceFields",
     "RateMaps",
     "RayleighTest",
@@ -39,6 +43,7 @@ __all__ = [
     "curve_stability",
     "decode_positions",
     "fit_heading_frame",
+    "fit_map_frame",
     "heading_centres",
     "heading_errors",
     "heading_statistics",
@@ -48,6 +53,7 @@ __all__ = [
     "pattern_correlations",
     "place_coverage",
     "place_fields",
+    "place_map",
     "place_statistics",
     "poisson_posterior",
     "poisson_spikes",

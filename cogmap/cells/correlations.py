@@ -21,7 +21,7 @@ def correlations(
     known = ~(np.isnan(one) | np.isnan(other))
     a, b = (standardised(np.where(known, rows, np.nan)) for rows in (one, other))
     products: np.ndarray = np.sum(a * b, axis=1)
-    return np.where(known.any(axis=1), products, np.nan)
+    return products
 
 
 def standardised(rows: Float[np.ndarray, "rows samples"]) -> Float[np.ndarray, "rows samples"]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 from sklearn.neighbors import KNeighborsRegressor
 
 from cogmap.cells.checks import check_array
@@ -134,3 +134,55 @@ def heading_errors(
     sign = -1 if frame.mirror else 1
     error: np.ndarray = np.angle(np.exp(1j * (sign * phase.astype(float) + frame.rotation - headings)))
     return error
+
+
+class MapFrame(NamedTuple):
+    """How a map z = x + iy lies in the room: at `scale` · z + `shift`, with z conjugate in a mirror."""
+
+    scale: complex
+    """Metres per unit of the map, turned by its angle."""
+    shift: complex
+    """In m."""
+    mirror: bool
+
+
+def fit_map_frame(mapped: Float[np.ndarray, "train 2"], positions: Float[np.ndarray, "train 2"]) -> MapFrame:
+    """Find the similarity, and whether a mirror, that brings a map closest to positions in m.
+
+    It minimises the squared distance; a tie is no mirror.
+
+    Raises
+    ------
+    CogmapError
+        For values that are not finite or shapes that do not fit.
+    """
+    check_array("mapped", mapped, (None, 2))
+    check_array("positions", positions, (len(mapped), 2))
+    found, true = _complex(mapped), _complex(positions)
+    plain, mirrored = (np.mean((true - true.mean()) * z.conj()) for z in (found, found.conj()))
+    mirror = bool(abs(mirrored) > abs(plain))
+    spread = np.mean(np.abs(found - found.mean()) ** 2)
+    scale = (mirrored if mirror else plain) / max(spread, np.finfo(float).tiny)
+    centre = found.mean()
+    return MapFrame(
+        complex(scale), complex(true.mean() - scale * (centre.conj() if mirror else centre)), mirror
+    )
+
+
+def place_map(mapped: Float[np.ndarray, "views 2"], frame: MapFrame) -> Float[np.ndarray, "views 2"]:
+    """Lay a map in the room, m.
+
+    Raises
+    ------
+    CogmapError
+        For values that are not finite or shapes that do not fit.
+    """
+    check_array("mapped", mapped, (None, 2))
+    found = _complex(mapped)
+    laid = frame.scale * (found.conj() if frame.mirror else found) + frame.shift
+    return np.stack([laid.real, laid.imag], axis=1)
+
+
+def _complex(points: Float[np.ndarray, "points 2"]) -> Complex[np.ndarray, "points"]:
+    combined: np.ndarray = points.astype(float) @ np.array([1, 1j])
+    return combined

@@ -16,7 +16,7 @@ SMALL = 50
 
 
 class RayleighTest(NamedTuple):
-    """Of every cell; NaN without spikes."""
+    """Of every cell; NaN with no more than one spike, which always has a direction."""
 
     z: Float[np.ndarray, "cells"]
     """n R², where R is the length of the mean direction of n spikes."""
@@ -60,9 +60,8 @@ def rayleigh_test(
     across, along = weight * np.cos(headings), weight * np.sin(headings)
     total, x, y, square = np.stack([weight, across, along, weight**2]) @ spikes.astype(float)
     number, resultant = ratio(total**2, square), ratio(np.hypot(x, y), total)
+    number = np.where(number > 1, number, np.nan)
     z = number * resultant**2
-    # NaN stays NaN.
-    n = np.maximum(number, 1e-12)
     second = 24 * z - 132 * z**2 + 76 * z**3 - 9 * z**4
-    bracket = np.where(number < SMALL, 1 + (2 * z - z**2) / (4 * n) - second / (288 * n**2), 1.0)
+    bracket = np.where(number < SMALL, 1 + (2 * z - z**2) / (4 * number) - second / (288 * number**2), 1.0)
     return RayleighTest(z, np.clip(np.exp(-z) * bracket, 0.0, 1.0))

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
+from sklearn.metrics import r2_score
 from sklearn.neighbors import KNeighborsRegressor
 
 from arena import Brownian, Camera
@@ -47,14 +48,13 @@ def brownian(setting: Setting) -> Result:
         isomap.fit_transform(found.words[known]), poses[known], isomap.transform(found.words[held])
     )
     truth = poses[held]
-    left = np.square(read.positions - truth[:, :2]).sum(axis=0)
-    spread = np.square(truth[:, :2] - truth[:, :2].mean(axis=0)).sum(axis=0)
     turn = heading_errors(read.headings, truth[:, 2], HeadingFrame(0.0, mirror=False))
     near = quasi_metric(found.graph, poses, setting.seed)
     shape = found.metrics(poses)
+    places = {"x (m)": poses[:, 0], "y (m)": poses[:, 1]}
     return Result(
         metrics={
-            "position_r2": (1 - left / spread).tolist(),
+            "position_r2": r2_score(truth[:, :2], read.positions, multioutput="raw_values").tolist(),
             "position_median_m": float(np.median(np.linalg.norm(read.positions - truth[:, :2], axis=1))),
             **shape,
             "loop_resultant": shape["heading_resultant"],
@@ -65,9 +65,8 @@ def brownian(setting: Setting) -> Result:
         tables={"views": found.table(poses), "distances": near.pairs, "places": near.places},
         figures={
             "room": plot_room(setting.room, poses),
-            "torus": plot_embedding(
-                found.embedding[:, :3], poses[:, 2], {"x (m)": poses[:, 0], "y (m)": poses[:, 1]}
-            ),
+            "torus": plot_embedding(found.embedding, poses[:, 2], places),
+            "torus_fourth": plot_embedding(found.embedding, poses[:, 2], places, coordinates=(0, 1, 3)),
             "heading": plot_compass(read.headings, truth[:, 2], truth[:, :2]),
             "position": plot_position(read.positions, truth[:, :2]),
             "distances": plot_quasi_metric(near.pairs, near.places),

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
-from typing import NamedTuple
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
 
 from arena import Arena
 from cogmap.errors import CogmapError
@@ -17,8 +18,10 @@ from cogmap.experiments.directionality import directionality
 from cogmap.experiments.distinguishability import distinguishability
 from cogmap.experiments.fusion import fusion
 from cogmap.experiments.goals import goals
+from cogmap.experiments.localisation import localisation
 from cogmap.experiments.outputs import result_folder
 from cogmap.experiments.result import Result
+from cogmap.experiments.roadmap import roadmap
 from cogmap.experiments.rotation import rotation
 from cogmap.experiments.setting import Setting
 from cogmap.experiments.similarity import similarity
@@ -36,6 +39,10 @@ class Experiment(NamedTuple):
     conduct: Callable[[Setting], Result]
     room: str
     views: int
+    elsewhere: bool = True
+    """Whether it can be done in other rooms."""
+    takes: tuple[str, ...] = ()
+    """Which of `nose`, `motion`, `camera` and `map` may differ from its own."""
 
 
 EXPERIMENTS = {
@@ -43,14 +50,16 @@ EXPERIMENTS = {
     "cyclic": Experiment(cyclic, "furnished", 4_000),
     "brownian": Experiment(brownian, "furnished", 17_000),
     "similarity": Experiment(similarity, "furnished", 5_000),
-    "distinguishability": Experiment(distinguishability, "white_rectangle", 17_000),
-    "fusion": Experiment(fusion, "furnished", 17_000),
-    "walks": Experiment(walks, "furnished", 17_000),
-    "sources": Experiment(sources, "furnished", 17_000),
-    "darkness": Experiment(darkness, "furnished", 17_000),
-    "cue_rotation": Experiment(cue_rotation, "open_field", 17_000),
-    "goals": Experiment(goals, "furnished", 17_000),
-    "directionality": Experiment(directionality, "furnished", 17_000),
+    "localisation": Experiment(localisation, "furnished", 17_000),
+    "roadmap": Experiment(roadmap, "obstacles", 17_000),
+    "distinguishability": Experiment(distinguishability, "white_rectangle", 17_000, elsewhere=False),
+    "fusion": Experiment(fusion, "furnished", 17_000, takes=("nose", "motion", "camera", "map")),
+    "walks": Experiment(walks, "furnished", 17_000, takes=("nose", "camera", "map")),
+    "sources": Experiment(sources, "furnished", 17_000, takes=("motion", "camera", "map")),
+    "darkness": Experiment(darkness, "furnished", 17_000, takes=("nose", "motion", "camera", "map")),
+    "cue_rotation": Experiment(cue_rotation, "open_field", 17_000, takes=("nose", "motion", "camera", "map")),
+    "goals": Experiment(goals, "furnished", 17_000, takes=("camera",)),
+    "directionality": Experiment(directionality, "furnished", 17_000, takes=("nose", "camera", "map")),
 }
 
 
@@ -62,6 +71,7 @@ def experiment(
     views: int | None = None,
     seed: int = 0,
     progress: bool = False,
+    **different: Any,
 ) -> Result:
     """Run an experiment by its name.
 
@@ -80,20 +90,32 @@ def experiment(
         Of walks, noise and all that is drawn.
     progress
         Whether to show progress on stderr.
+    different
+        `nose`, `motion`, `camera`, or parameters of `CognitiveMap` as `map`, where the experiment takes them.
 
     Raises
     ------
     ArenaError, CogmapError
-        For an unknown name, a room or counts that cannot work, a folder that holds something else.
+        For an unknown name, a room or counts that cannot work, something that the experiment does not take, a
+        folder that holds something else.
     """
     if name not in EXPERIMENTS:
         raise CogmapError(f"there is no experiment {name!r}; choose one of {', '.join(EXPERIMENTS)}")
     chosen = EXPERIMENTS[name]
+    if room is not None and not chosen.elsewhere:
+        raise CogmapError(f"{name} takes place in rooms of its own, not in {room.name!r}; leave the room out")
+    for what in different:
+        if what not in chosen.takes:
+            takes = ", ".join(chosen.takes) or "nothing but room, views and seed"
+            raise CogmapError(f"{name} does not take another {what}; it takes {takes}")
     views = chosen.views if views is None else checked_count("views", views, FEWEST)
-    setting = Setting(room or Arena.load(chosen.room), views, seed, progress)
-    with nullcontext() if out is None else result_folder(out) as folder:
-        found = chosen.conduct(setting)
-        about = {"experiment": name, "arena": setting.room.name, "views": views, "seed": seed}
+    room = room or Arena.load(chosen.room)
+    with (
+        nullcontext() if out is None else result_folder(out) as folder,
+        TemporaryDirectory(prefix="cogmap-") as scratch,
+    ):
+        found = chosen.conduct(Setting(room, views, seed, progress, Path(scratch), **different))
+        about = {"experiment": name, "arena": room.name, "views": views, "seed": seed}
         result = Result({**about, **found.metrics}, found.tables, found.figures)
         if folder is not None:
             result.write(folder)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 from jaxtyping import Float
@@ -11,11 +13,9 @@ from cogmap.cells import RateMaps, bin_edges, mean_vectors, rate_maps, tuning_cu
 from cogmap.errors import CogmapError
 from cogmap.experiments.populations import grow_map, map_correlations, perceive
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import Setting, poses_of
+from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.plots import Tuning, plot_examples
 
-FRESH = 5000
-"""Views of each walk that is scored."""
 PLATFORM, ROOM = 1.5, 2.5
 """Half the side of the platform and of the room, m."""
 CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))
@@ -34,12 +34,12 @@ def cue_rotation(setting: Setting) -> Result:
     camera = Camera.panoramic()
     rooms = {turns: square_room(setting.room, turns) for turns in (0, 1)}
     walk, before, after = (
-        Setting(rooms[turns], setting.views, setting.seed + late, setting.progress).explore(
+        replace(setting, room=rooms[turns], seed=setting.seed + late).explore(
             Brownian(), camera, views=min(setting.views, most), fresh=late > 0
         )
         for turns, late, most in ((0, 0, setting.views), (0, 1, FRESH), (1, 2, FRESH))
     )
-    cmap = grow_map(walk.views, walk.odours, setting.seed)
+    cmap = grow_map(setting, walk)
     lit = perceive(cmap, before.views), perceive(cmap, after.views)
     dark = cmap.perceive(odours=before.odours), cmap.perceive(odours=after.odours)
     place = {

@@ -46,7 +46,7 @@ def cyclic(setting: Setting) -> Result:
         tables={"views": table, "distances": near.pairs, "places": near.places},
         figures={
             "walk": plot_walk(setting.room, walk.times, poses),
-            "cylinder": plot_embedding(found.embedding[:, :3], poses[:, 2], {"translation (m)": along}),
+            "cylinder": plot_embedding(found.embedding, poses[:, 2], {"translation (m)": along}),
             "heading": plot_compass(table["loop_rad"].to_numpy()[known], poses[known, 2], poses[known, :2]),
             "translation": plot_translation(height[known], along[known], poses[known, 2]),
             "distances": plot_quasi_metric(near.pairs, near.places),

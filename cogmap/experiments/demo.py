@@ -19,8 +19,10 @@ from arena import Arena, Body, Brownian, Camera, Recording, explore
 from cogmap.activity import Activity
 from cogmap.cells import (
     fit_heading_frame,
+    fit_map_frame,
     heading_errors,
     heading_statistics,
+    place_map,
     place_statistics,
     position_errors,
     rate_maps,
@@ -31,12 +33,13 @@ from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.experiments.homologies import homologies
 from cogmap.experiments.outputs import METRICS, result_folder
-from cogmap.experiments.setting import FRESH_SEED, poses_of
+from cogmap.experiments.setting import FRESH, FRESH_SEED, poses_of
 from cogmap.inputs import checked_count
 from cogmap.manifold.homology import Betti
 from cogmap.plots import (
     plot_barcodes,
     plot_compass,
+    plot_metric_map,
     plot_position,
     plot_rate_maps,
     plot_room,
@@ -44,9 +47,6 @@ from cogmap.plots import (
     plot_views,
 )
 from cogmap.scoring import score
-
-FRESH = 5000
-"""Views of the recording that scores are taken on, or as many as were learnt from when these are fewer."""
 
 
 @dataclass
@@ -143,6 +143,7 @@ def demo(
             "charts": charts,
             "trusted": cmap.trusted_,
             "reason": cmap.reason_,
+            "metric_reason": cmap.metric_reason_,
             **figures,
             **{f"betti_{name}": list(found.numbers) for name, found in bars.items()},
             "betti_votes": {name: list(found.votes) for name, found in bars.items()},
@@ -193,6 +194,9 @@ def _draw(folder: Path, room: Arena, learnt: Outing, fresh: Outing, bars: dict[s
         ),
         "barcodes": plot_barcodes(bars),
     }
+    if not np.isnan(rates.position).all():
+        laid = place_map(rates.position, fit_map_frame(learnt.activity.position, known))
+        drawings["metric_map"] = plot_metric_map(laid, positions)
     for name, figure in drawings.items():
         figure.savefig(folder / f"{name}.png")
 

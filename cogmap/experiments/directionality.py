@@ -14,11 +14,9 @@ from cogmap.experiments.populations import (
     perceive,
 )
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import Setting, poses_of
+from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.plots import Tuning, plot_cell_types, plot_examples
 
-FRESH = 5000
-"""Views of the walk that is scored."""
 DIRECTIONAL = 0.5
 """A longer in-field vector is that of a cell that fires three times as much one way as the other."""
 WALKS: dict[str, Motion] = {"open_field": Brownian(), "corridor": Track()}
@@ -45,7 +43,7 @@ def directionality(setting: Setting) -> Result:
         fresh = setting.explore(motion, Camera.panoramic(), views=min(FRESH, setting.views), fresh=True)
         known = poses_of(walk)
         ground = Ground(known, poses_of(fresh), known[:, :2])
-        cmap = grow_map(walk.views, walk.odours, setting.seed)
+        cmap = grow_map(setting, walk)
         codes = cmap.encode(walk.views), cmap.encode(fresh.views)
         rates = {
             "vision_only": competing_cells(*codes, seed=setting.seed)[0],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -65,29 +66,36 @@ def distinguishability(setting: Setting) -> Result:
 
 def _look(setting: Setting, room: Arena) -> _Seen:
     strips = Camera.panoramic()
-    here = Setting(room, setting.views, setting.seed, setting.progress)
+    here = replace(setting, room=room)
     walk = here.explore(Brownian(), strips)
     fresh = here.explore(Brownian(), strips, views=min(QUERIES, setting.views), fresh=True)
     known, asked = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), setting.seed)
     nearest = poses_of(walk)[nearest_points(known, 1, queries=asked).indices[:, 0]]
     poses = poses_of(fresh)
-    x0, y0, x1, y1 = room.bounds
-    opposite = np.array([x0 + x1, y0 + y1, np.pi]) + poses * [-1, -1, 1]
-    own, other = (
-        np.array([motion_distances(a[None], b[None])[0, 0] for a, b in zip(nearest, there, strict=True)])
-        for there in (poses, opposite)
-    )
+    opposite = _opposite(room, poses)
     columns = ["x_m", "y_m", "heading_rad"]
     table = pd.DataFrame(poses, columns=columns).join(
         pd.DataFrame(nearest, columns=[f"nearest_{name}" for name in columns])
     )
     first = np.stack([poses[0], opposite[0]])
     return _Seen(
-        nearest=table.assign(confused=other < own),
+        nearest=table.assign(confused=_apart(nearest, opposite) < _apart(nearest, poses)),
         shape=betti(known, seed=setting.seed),
         pair=strips.render(room, first),
         poses=first,
     )
+
+
+def _opposite(room: Arena, poses: Float[np.ndarray, "views 3"]) -> Float[np.ndarray, "views 3"]:
+    """Poses after half a turn about the middle of the room."""
+    x0, y0, x1, y1 = room.bounds
+    turned: np.ndarray = np.array([x0 + x1, y0 + y1, np.pi]) + poses * [-1, -1, 1]
+    return turned
+
+
+def _apart(ours: Float[np.ndarray, "views 3"], theirs: Float[np.ndarray, "views 3"]) -> np.ndarray:
+    """How far each pose is from the one in the same row, m."""
+    return np.array([motion_distances(a[None], b[None])[0, 0] for a, b in zip(ours, theirs, strict=True)])
 
 
 def retina_codes(

@@ -7,12 +7,9 @@ import numpy as np
 from arena import Brownian, Camera
 from cogmap.experiments.populations import Ground, as_one_table, competing_cells, grow_map, perceive
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import Setting, poses_of
+from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.plots import plot_cell_types, plot_examples
 from cogmap.scoring import score
-
-FRESH = 5000
-"""Views of the walk that is scored."""
 
 
 def fusion(setting: Setting) -> Result:
@@ -22,12 +19,14 @@ def fusion(setting: Setting) -> Result:
     odour that the nose smells (`olfaction_only`); the two populations of the map (`fused`) fire from sight.
     All are measured on a fresh walk, each cell both as a place cell and as a head-direction cell.
     `place_cells_passing` and `heading_cells_passing` of `vision_only` and `olfaction_only` are of the same
-    cells; `position_median_m` of `olfaction_only` is read from the raw nose.
+    cells; `position_median_m` of `olfaction_only` is read from the raw nose. `in_field_direction_vector` is
+    the median over the cells that have a field. `seconds` are those of learning, by stage; `reason` and
+    `metric_reason` say why the map is not to be trusted, or lays out no places.
     """
     camera = Camera.panoramic()
     walk = setting.explore(Brownian(), camera)
     fresh = setting.explore(Brownian(), camera, views=min(FRESH, setting.views), fresh=True)
-    cmap = grow_map(walk.views, walk.odours, setting.seed)
+    cmap = grow_map(setting, walk)
     ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
     known, asked = (perceive(cmap, one.views) for one in (walk, fresh))
     codes = [cmap.encode(one.views) for one in (walk, fresh)]
@@ -55,6 +54,9 @@ def fusion(setting: Setting) -> Result:
                 **score(asked, ground.poses, train=(known, ground.known), reachable=ground.reachable),
                 **{f"nose_{key}": value for key, value in nose.items()},
                 "trusted": cmap.trusted_,
+                "reason": cmap.reason_,
+                "metric_reason": cmap.metric_reason_,
+                "seconds": {stage: round(spent, 3) for stage, spent in cmap.seconds_.items()},
             },
         },
         tables={"cells": table},

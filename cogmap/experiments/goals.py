@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import scipy.sparse as sp
@@ -12,14 +14,12 @@ from cogmap.cells import fit_heading_frame, heading_errors
 from cogmap.experiments.distinguishability import retina_codes
 from cogmap.experiments.populations import Ground, as_one_table
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import Setting, poses_of
+from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.manifold import betti, circular_coordinate, nearest_points, neighbour_graph
 from cogmap.plots import plot_cell_types, plot_examples, plot_goals
 
 ACROSS, ALONG = 4, 3
 """Goals over the width and the depth of the room: the goal is moved from one to the next."""
-FRESH = 5000
-"""Views of the walk that is scored."""
 ORIENTATIONS = 36
 """Cells, each a direction of the reference ring."""
 CONCENTRATION = 5.0
@@ -159,7 +159,7 @@ def _visit(setting: Setting, goal: Float[np.ndarray, "2"], camera: Camera) -> Re
     """Climb the only odour of the room, from a goal, and keep the views at its maximum."""
     x, y = goal.tolist()
     scented = setting.room.model_copy(update={"sources": [{"position": (x, y)}]})
-    here = Setting(scented, setting.views, setting.seed, setting.progress)
+    here = replace(setting, room=scented)
     count = max(FEWEST, setting.views // (ACROSS * ALONG))
     walk = here.explore(Chemotaxis(), camera, views=count)
     stays = walk.attributes["walk"]["at_maximum"]

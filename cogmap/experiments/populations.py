@@ -10,7 +10,7 @@ import pandas as pd
 import torch
 from jaxtyping import Float
 
-from arena import Arena, Body
+from arena import Arena, Body, Recording
 from cogmap.activity import Activity
 from cogmap.cells import (
     RateMaps,
@@ -25,6 +25,7 @@ from cogmap.cells import (
 )
 from cogmap.cells.ratios import ratio
 from cogmap.cognitive_map import BATCH, CognitiveMap
+from cogmap.experiments.setting import Setting
 from cogmap.layers import EPOCHS
 from cogmap.plots import Tuning
 from cogmap.threads import one_thread
@@ -35,9 +36,13 @@ CELLS = 150
 MOST_CHARTS = 3000
 
 
-def grow_map(views: Any, odours: Float[np.ndarray, "views odorants"], seed: int) -> CognitiveMap:
-    """Learn a map with 3,000 charts, or a third as many as views when these are fewer than 9,000."""
-    return CognitiveMap(charts=min(MOST_CHARTS, len(odours) // 3), seed=seed).fit(views, odours)
+def grow_map(setting: Setting, walk: Recording) -> CognitiveMap:
+    """Learn a map with 3,000 charts, or a third as many as views when these are fewer than 9,000.
+
+    Parameters that the setting has of its own go before these.
+    """
+    usual = {"charts": min(MOST_CHARTS, len(walk) // 3), "seed": setting.seed}
+    return CognitiveMap(**{**usual, **setting.map}).fit(walk.views, walk.odours)
 
 
 def perceive(cmap: CognitiveMap, views: Any) -> Activity:

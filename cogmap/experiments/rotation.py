@@ -48,7 +48,7 @@ def rotation(setting: Setting) -> Result:
         tables={"views": found.table(poses), "predictions": fit.table, "distances": near.pairs},
         figures={
             "views": plot_views(np.asarray(walk[shown].views), poses[shown], 4, panoramic=False),
-            "ring": plot_embedding(found.embedding[:, :2], poses[:, 2]),
+            "ring": plot_embedding(found.embedding, poses[:, 2], coordinates=(0, 1)),
             "prediction": plot_compass(
                 (test["heading_rad"] + test["error_rad"]).to_numpy(), test["heading_rad"].to_numpy()
             ),

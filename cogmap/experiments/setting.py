@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
-from arena import Arena, Camera, Motion, Recording, explore
+from arena import Arena, Body, Camera, Motion, Nose, Recording, explore
 
+FRESH = 5000
+"""Views of a fresh walk, or as many as were learnt from when these are fewer."""
 FRESH_SEED = 1000
 """Added to the seed for a fresh walk, on which what was learnt is scored."""
+_BODY = Body()
+_NOSE = Nose()
 
 
 @dataclass(frozen=True)
@@ -24,17 +32,39 @@ class Setting:
     """Of walks, noise and all that is drawn."""
     progress: bool = False
     """Whether to show progress on stderr."""
+    scratch: Path | None = None
+    """Folder to keep views in while the experiment lasts; in memory when None."""
+    nose: Nose = _NOSE
+    """To smell with."""
+    motion: Motion | None = None
+    """Way to move; the experiment's own when None."""
+    camera: Camera | None = None
+    """To look through; the experiment's own when None."""
+    map: Mapping[str, Any] = field(default_factory=dict)
+    """Parameters of `CognitiveMap` that differ from the experiment's own."""
 
     def explore(
-        self, motion: Motion, camera: Camera, *, views: int | None = None, fresh: bool = False
+        self,
+        motion: Motion,
+        camera: Camera,
+        *,
+        body: Body = _BODY,
+        views: int | None = None,
+        fresh: bool = False,
     ) -> Recording:
-        """Walk through the room; the same walk whatever the camera."""
+        """Walk through the room, by `motion` and `camera` where the setting has none of its own.
+
+        The walk is the same whatever the camera.
+        """
         return explore(
             self.room,
-            motion,
-            camera,
+            self.motion or motion,
+            self.camera or camera,
+            body=body,
+            nose=self.nose,
             views=self.views if views is None else views,
             seed=self.seed + FRESH_SEED * fresh,
+            out=None if self.scratch is None else Path(mkdtemp(dir=self.scratch)) / "walk.zarr",
             progress=self.progress,
         )
 

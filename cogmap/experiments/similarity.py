@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from jaxtyping import Float, Int
 
 from arena import Brownian, Camera
 from cogmap.experiments.result import Result
@@ -54,12 +55,28 @@ def similarity(setting: Setting) -> Result:
     }
     best = {name: found.argmin(axis=1) for name, found in distances.items()}
     best["pose"] = motion_distances(asked, poses).argmin(axis=1)
-    table = pd.concat(
+    table = _nearest_table(best, asked, poses)
+    shown = np.linspace(0, count - 1, min(SHOWN, count)).astype(int)
+    pictures = {"query": np.asarray(fresh[shown].views)} | {
+        name: np.asarray(walk[found[shown]].views) for name, found in best.items()
+    }
+    return Result(
+        metrics=metrics, tables={"nearest": table}, figures={"likeness": plot_likeness(table, pictures)}
+    )
+
+
+def _nearest_table(
+    best: dict[str, Int[np.ndarray, "queries"]],
+    asked: Float[np.ndarray, "queries 3"],
+    poses: Float[np.ndarray, "views 3"],
+) -> pd.DataFrame:
+    """Tell how far in pose the view is that each measure finds most like each query."""
+    return pd.concat(
         [
             pd.DataFrame(
                 {
                     "measure": name,
-                    "query": np.arange(count),
+                    "query": np.arange(len(asked)),
                     "view": found,
                     "position_error_m": np.linalg.norm(poses[found, :2] - asked[:, :2], axis=1),
                     "heading_error_deg": np.rad2deg(
@@ -70,11 +87,4 @@ def similarity(setting: Setting) -> Result:
             for name, found in best.items()
         ],
         ignore_index=True,
-    )
-    shown = np.linspace(0, count - 1, min(SHOWN, count)).astype(int)
-    pictures = {"query": fresh.views[shown]} | {
-        name: np.stack([walk.views[view] for view in found[shown]]) for name, found in best.items()
-    }
-    return Result(
-        metrics=metrics, tables={"nearest": table}, figures={"likeness": plot_likeness(table, pictures)}
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,12 +11,10 @@ import pandas as pd
 from arena import Arena, Brownian, Camera, Nose, Recording
 from cogmap.experiments.populations import Ground, grow_map, perceive
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import FRESH_SEED, Setting, poses_of
+from cogmap.experiments.setting import FRESH, FRESH_SEED, Setting, poses_of
 from cogmap.plots import plot_sources
 from cogmap.scoring import score
 
-FRESH = 5000
-"""Views of the walk that is scored."""
 PLACES = ((-1.5, -1.0), (1.6, 0.9), (1.2, -1.1), (-1.3, 1.0))
 """Of the sources in m, added one by one; the first three are those of every room."""
 NOISE = (0.0, 0.1, 0.2, 0.3)
@@ -63,7 +62,7 @@ def _learn(
         smell(setting.room, one, count=count, noise=noise, seed=setting.seed + late)
         for one, late in ((walk, 0), (fresh, FRESH_SEED))
     ]
-    cmap = grow_map(walk.views, smells[0], setting.seed)
+    cmap = grow_map(setting, replace(walk, odours=smells[0]))
     known, asked = (perceive(cmap, one.views) for one in (walk, fresh))
     place = ground.measure(asked.place)
     return {

@@ -9,14 +9,11 @@ import numpy as np
 from arena import Brownian, Camera, Motion, Track
 from cogmap.experiments.populations import Ground, Measured, as_one_table, grow_map, perceive
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import Setting, poses_of
+from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.experiments.slow_features import slow_cells
 from cogmap.experiments.slow_turning import SlowTurning
 from cogmap.plots import plot_cell_types
 from cogmap.scoring import score
-
-FRESH = 5000
-"""Views of the walk that is scored."""
 
 
 class Way(NamedTuple):
@@ -68,7 +65,7 @@ def _learn(setting: Setting, way: Way) -> tuple[dict[str, Any], dict[str, Measur
         walk = walk[np.random.default_rng(setting.seed).permutation(len(walk))]
     known, poses = poses_of(walk), poses_of(fresh)
     ground = Ground(known, poses, known[:, :2])
-    cmap = grow_map(walk.views, walk.odours, setting.seed)
+    cmap = grow_map(setting, walk)
     codes = [cmap.encode(one.views) for one in (walk, fresh)]
     learnt, slow = slow_cells(codes[0], *codes, seed=setting.seed)
     before, after = (perceive(cmap, one.views) for one in (walk, fresh))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
-from jaxtyping import Int
+from jaxtyping import Bool, Int
 from scipy.sparse.csgraph import connected_components
 
 from cogmap.errors import CogmapError
@@ -33,7 +33,9 @@ class Components(NamedTuple):
         return np.bincount(self.labels, minlength=self.number)
 
 
-def neighbour_graph(X: Cloud, neighbours: int = 15, *, metric: Metric = "euclidean") -> sp.csr_array:
+def neighbour_graph(
+    X: Cloud, neighbours: int = 15, *, metric: Metric = "euclidean", one_sided: int | None = None
+) -> sp.csr_array:
     """Join every point to its nearest neighbours by edges as long as they are apart.
 
     An edge runs both ways when either end counts the other among its nearest (`nearest.nearest`: exact up to
@@ -49,6 +51,10 @@ def neighbour_graph(X: Cloud, neighbours: int = 15, *, metric: Metric = "euclide
         How many nearest points to join each point to.
     metric
         "euclidean", or "cosine" for bags of words.
+    one_sided
+        How many of the nearest are joined even when they do not count the point among theirs; all of them
+        when None. A point of a thinly sampled place has to look far for its last neighbours, and finds them
+        where it does not belong; these have nearer ones.
 
     Returns
     -------
@@ -69,6 +75,8 @@ def neighbour_graph(X: Cloud, neighbours: int = 15, *, metric: Metric = "euclide
         )
     ends, lengths = nearest_points(points, neighbours, metric=metric)
     found = ends >= 0
+    if one_sided is not None:
+        found &= _mutual(ends) | (np.arange(neighbours) < one_sided)
     repeats = np.setdiff1d(np.arange(X.shape[0]), first)
     rows = np.concatenate([np.repeat(first, found.sum(axis=1)), repeats])
     columns = np.concatenate([first[ends[found]], first[same.ravel()[repeats]]])
@@ -76,6 +84,13 @@ def neighbour_graph(X: Cloud, neighbours: int = 15, *, metric: Metric = "euclide
     values = np.concatenate([np.maximum(lengths[found], TINY), np.full(len(repeats), TINY)])
     graph = sp.csr_array((values.astype(np.float64), (rows, columns)), shape=(X.shape[0], X.shape[0]))
     return sp.csr_array(graph.maximum(graph.T))
+
+
+def _mutual(ends: Int[np.ndarray, "points neighbours"]) -> Bool[np.ndarray, "points neighbours"]:
+    """Tell which of the points that each counts among its nearest count it among theirs."""
+    points = np.arange(len(ends))[:, None]
+    counted = (points * len(ends) + ends)[ends >= 0]
+    return np.isin(ends * len(ends) + points, counted)
 
 
 def lengthen_shortcuts(graph: sp.csr_array, shared: int = 3) -> sp.csr_array:

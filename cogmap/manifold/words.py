@@ -53,7 +53,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
     seed
         Draws the first cluster centres.
     workers
-        Processes; as many as cores when None.
+        Threads; as many as cores when None.
     progress
         Whether to show a bar on stderr.
 
@@ -105,11 +105,11 @@ class BagOfWords(TransformerMixin, BaseEstimator):
         blocks = _blocks(X)
         sample = blocks[:: -(-len(blocks) * BLOCK // SAMPLE)]
         rest = [block for block in blocks if block not in sample]
-        with self._bar(X) as bar:
+        with self._bar(X) as bar, one_thread():
             described = list(self._over(_describe, X, sample, bar))
-            kinds = ([one.values for one in kind] for kind in zip(*described, strict=True))
-            self.vocabulary_, self.palette_ = self._crew()(
-                delayed(_learn)(kind, count, seed) for kind, count in zip(kinds, counts, strict=True)
+            kinds = (np.concatenate([one.values for one in kind]) for kind in zip(*described, strict=True))
+            self.vocabulary_, self.palette_ = (
+                learn_words(kind, count, seed) for kind, count in zip(kinds, counts, strict=True)
             )
             known = [_show(one, self._words) for one in described]
             shown = [*known, *self._over(partial(_read, words=self._words), X, rest, bar)]
@@ -124,7 +124,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
         """Give the words that each view shows: float32 (views, words + colours)."""
         check_is_fitted(self)
         check_views(X)
-        with self._bar(X) as bar:
+        with self._bar(X) as bar, one_thread():
             shown = list(self._over(partial(_read, words=self._words), X, _blocks(X), bar))
         return self._weigh(sp.vstack(shown, format="csr"))
 
@@ -135,15 +135,13 @@ class BagOfWords(TransformerMixin, BaseEstimator):
     def _bar(self, X: Any) -> tqdm[Any]:
         return tqdm(total=X.shape[0], unit="view", disable=not self.progress)
 
-    def _crew(self) -> Parallel:
-        # Blocks go through pipes: joblib would write arrays of their size to a disk first.
-        return Parallel(self.workers or cpu_count(), return_as="generator", max_nbytes=None)
-
     def _over(
         self, work: Callable[[Images], Result], X: Any, blocks: list[slice], bar: tqdm[Any]
     ) -> Iterator[Result]:
         """Work on blocks of views, in order."""
-        results = self._crew()(delayed(work)(np.asarray(X[block])) for block in blocks)
+        # OpenCV and BLAS release the interpreter: threads save carrying views to other processes.
+        crew = Parallel(self.workers or cpu_count(), return_as="generator", prefer="threads")
+        results = crew(delayed(_on)(work, X, block) for block in blocks)
         for block, result in zip(blocks, results, strict=True):
             bar.update(block.stop - block.start)
             yield result
@@ -160,14 +158,12 @@ def _blocks(X: Any) -> list[slice]:
     return [slice(first, min(first + BLOCK, views)) for first in range(0, views, BLOCK)]
 
 
+def _on(work: Callable[[Images], Result], X: Any, block: slice) -> Result:
+    return work(np.asarray(X[block]))
+
+
 def _describe(images: Images) -> tuple[Descriptors, Descriptors]:
-    with one_thread():
-        return keypoints(images), patches(images)
-
-
-def _learn(descriptors: list[Rows], count: int, seed: int) -> Rows:
-    with one_thread():
-        return learn_words(np.concatenate(descriptors), count, seed)
+    return keypoints(images), patches(images)
 
 
 def _read(images: Images, words: tuple[Rows, Rows]) -> sp.csr_array:
@@ -177,11 +173,10 @@ def _read(images: Images, words: tuple[Rows, Rows]) -> sp.csr_array:
 def _show(described: tuple[Descriptors, Descriptors], words: tuple[Rows, Rows]) -> sp.csr_array:
     """Tell which words occur in each image."""
     rows, columns, offset = [], [], 0
-    with one_thread():
-        for (values, counts), known in zip(described, words, strict=True):
-            if len(known):
-                rows.append(np.repeat(np.arange(len(counts)), counts))
-                columns.append(offset + nearest_words(values, known))
-                offset += len(known)
+    for (values, counts), known in zip(described, words, strict=True):
+        if len(known):
+            rows.append(np.repeat(np.arange(len(counts)), counts))
+            columns.append(offset + nearest_words(values, known))
+            offset += len(known)
     spots = np.concatenate(rows), np.concatenate(columns)
     return sp.csr_array((np.ones(len(spots[0]), bool), spots), shape=(len(described[0].counts), offset))

@@ -9,10 +9,14 @@ from cogmap.plots.examples import Tuning, plot_examples
 from cogmap.plots.goals import plot_goals
 from cogmap.plots.heading_cells import plot_tuning_curves
 from cogmap.plots.likeness import plot_likeness
+from cogmap.plots.localisation import plot_localisation
+from cogmap.plots.metric_map import plot_metric_map
+from cogmap.plots.neighbours import plot_neighbours
 from cogmap.plots.place_cells import plot_rate_maps
 from cogmap.plots.position import plot_position
 from cogmap.plots.quasi_metric import plot_quasi_metric
 from cogmap.plots.room import plot_room
+from cogmap.plots.routes import plot_routes
 from cogmap.plots.sheet import plot_sheet
 from cogmap.plots.sources import plot_sources
 from cogmap.plots.translation import plot_translation
@@ -29,10 +33,14 @@ __all__ = [
     "plot_examples",
     "plot_goals",
     "plot_likeness",
+    "plot_localisation",
+    "plot_metric_map",
+    "plot_neighbours",
     "plot_position",
     "plot_quasi_metric",
     "plot_rate_maps",
     "plot_room",
+    "plot_routes",
     "plot_sheet",
     "plot_sources",
     "plot_translation",

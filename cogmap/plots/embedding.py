@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,8 @@ def plot_embedding(
     embedding: Float[np.ndarray, "views components"],
     headings: Float[np.ndarray, "views"],
     others: Mapping[str, Float[np.ndarray, "views"]] | None = None,
+    *,
+    coordinates: Sequence[int] = (0, 1, 2),
 ) -> Figure:
     """Draw two or three coordinates of the views, once coloured by heading and once by each of the others.
 
@@ -39,17 +41,21 @@ def plot_embedding(
         rad.
     others
         What else to colour by, under a name with its unit.
+    coordinates
+        Which two or three to draw.
 
     Raises
     ------
     CogmapError
-        For values that are not finite, shapes that do not fit, other than two or three coordinates.
+        For values that are not finite, shapes that do not fit, coordinates that do not exist.
     """
     check_array("embedding", embedding, (None, None))
     check_array("headings", headings, (len(embedding),))
-    components = embedding.shape[1]
-    if components not in {2, 3}:
-        raise CogmapError(f"there are {components} coordinates; choose two or three to draw")
+    components = len(coordinates)
+    if components not in {2, 3} or not all(0 <= one < embedding.shape[1] for one in coordinates):
+        raise CogmapError(
+            f"coordinates {tuple(coordinates)} of {embedding.shape[1]} cannot be drawn; choose two or three"
+        )
     others = others or {}
     for name, values in others.items():
         check_array(name, values, (len(embedding),))
@@ -58,21 +64,22 @@ def plot_embedding(
     panels = figure.subplots(
         1, 1 + len(others), squeeze=False, subplot_kw={"projection": "3d"} if components == 3 else {}
     )[0]
-    points = embedding[chosen].T
-    _draw(panels[0], points, direction_colours(headings[chosen]))
+    points = embedding[chosen][:, list(coordinates)].T
+    names = [f"coordinate {one + 1} (no unit)" for one in coordinates]
+    _draw(panels[0], points, names, direction_colours(headings[chosen]))
     heading_bar(panels[0], pad=PADS[components])
     for axes, (name, values) in zip(panels[1:], others.items(), strict=True):
-        drawn = _draw(axes, points, values[chosen])
+        drawn = _draw(axes, points, names, values[chosen])
         colour_bar(axes, drawn, name, pad=PADS[components])
     figure.suptitle(f"{len(embedding):,} views on their manifold", fontsize=SMALL, color=INK)
     return figure
 
 
-def _draw(axes: Any, points: np.ndarray, colours: np.ndarray) -> PathCollection:
+def _draw(axes: Any, points: np.ndarray, names: list[str], colours: np.ndarray) -> PathCollection:
     """Scatter points in a plane or, where the axes have three dimensions, in space."""
-    tidy(axes, x="coordinate 1 (no unit)", y="coordinate 2 (no unit)")
+    tidy(axes, x=names[0], y=names[1])
     if len(points) == 3:
-        axes.set_zlabel("coordinate 3 (no unit)", fontsize=SMALL, color=INK)
+        axes.set_zlabel(names[2], fontsize=SMALL, color=INK)
         axes.tick_params(axis="z", labelsize=TINY, colors=INK)
         axes.set_box_aspect(np.ptp(points, axis=1))
         axes.view_init(elev=28, azim=-60)

@@ -100,7 +100,7 @@ def test_any_view_is_drawn_and_nothing_else_is_written(
 
 
 def apart(room: Arena) -> Arena:
-    """Leave out the solids that overlap others."""
+    """Leave out the solids that overlap others, and the walls that lie in others or in a face."""
     kept: list[Solid] = []
     for solid in room.solids:
         outline = shapely.Polygon(solid.outline)
@@ -110,6 +110,13 @@ def apart(room: Arena) -> Arena:
     for name in ("boxes", "pillars", "blocks"):
         parts = getattr(room, name)
         fields[name] = [part.model_dump() for part in parts if any(part is solid for solid in kept)]
+    lines = [shapely.Polygon(solid.outline).exterior for solid in kept]
+    fields["walls"] = []
+    for wall in room.walls:
+        line = shapely.LineString([wall.start, wall.end])
+        if not any(line.intersection(other).length > 0 for other in lines):
+            lines.append(line)
+            fields["walls"].append(wall.model_dump())
     return Arena.create(**fields)
 
 

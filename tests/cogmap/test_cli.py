@@ -8,6 +8,7 @@ import pytest
 
 from arena import Arena, Recording
 from cogmap import CognitiveMap, cli
+from cogmap.experiments.catalogue import EXPERIMENTS
 
 FURNISHED = Arena.load("furnished").to_toml()
 
@@ -181,6 +182,9 @@ def test_a_room_without_free_space_is_refused(run, tmp_path: Path) -> None:
         (["explore", "furnished", "--motion", "replay", "--path", "nowhere.csv"], "nowhere.csv"),
         (["explore", "furnished", "--motion", "track", "--path", "rat.csv"], "path"),
         (["explore", "furnished", "--odorant", 1], "odorant"),
+        (["experiment", "levitation"], "choose one of rotation"),
+        (["experiment", "rotation", "--views", 3], "views is 3"),
+        (["experiment", "distinguishability", "--arena", "furnished"], "rooms of its own"),
         (["dance"], "dance"),
         (["demo", "--sofa", 3], "sofa"),
     ],
@@ -222,8 +226,18 @@ def test_what_does_not_fit_is_told_in_one_line(run, folder: Path, tmp_path: Path
     assert np.asarray(Recording.open(wide).views[:]).shape == (20, 60, 360, 3)
 
 
+def test_an_experiment_leaves_its_metrics(run, tmp_path: Path) -> None:
+    out = tmp_path / "spin"
+    status, said, _ = run("experiment", "rotation", "--views", 200, "--seed", 1, "--out", out, "--json")
+    assert status == 0
+    assert json.loads(said) == json.loads((out / "metrics.json").read_text(encoding="utf-8"))
+    assert {"views.png", "views.parquet"} <= {file.name for file in out.iterdir()}
+
+
 def test_help_gives_examples(run) -> None:
-    for command in ("demo", "arena", "explore", "learn", "score"):
+    said = run("experiment", "--help")[1]
+    assert all(name in said for name in EXPERIMENTS)
+    for command in ("demo", "experiment", "arena", "explore", "learn", "score"):
         status, out, _ = run(command, "--help")
         assert status == 0
         assert f"cogmap {command} " in " ".join(out.split())

@@ -1,3 +1,4 @@
+import copy
 import inspect
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,8 +11,9 @@ import torch
 
 from arena import Arena, Brownian, Camera, Recording, explore
 from cogmap import Activity, CogmapError, CognitiveMap, score
-from cogmap.layers import EPOCHS
+from cogmap.layers import EPOCHS, IN_ORDER
 
+GAUGE_BEGINS = sum(list(EPOCHS.values())[: list(EPOCHS).index(IN_ORDER)])
 Grow = Callable[..., CognitiveMap]
 
 
@@ -23,7 +25,7 @@ def same(a: CognitiveMap, b: CognitiveMap) -> bool:
 
 
 def assert_same(a: Activity, b: Activity) -> None:
-    for name in ("place", "heading", "phase", "odour"):
+    for name in ("place", "heading", "phase", "odour", "position"):
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
 
 
@@ -34,7 +36,7 @@ def test_poses_cannot_reach_learning(walk: Recording, grow: Grow, cmap: Cognitiv
     assert same(cmap, grow(walk.without_truth()))
     assert same(cmap, grow(lied_to))
     for learn in (CognitiveMap.fit, CognitiveMap.partial_fit, CognitiveMap.perceive):
-        assert set(inspect.signature(learn).parameters) <= {"self", "views", "odours", "progress"}
+        assert set(inspect.signature(learn).parameters) <= {"self", "views", "odours", "progress", "jump"}
 
 
 def test_one_thread_or_two_give_the_same_map(
@@ -62,9 +64,10 @@ def test_another_seed_gives_another_map(walk: Recording, grow: Grow, cmap: Cogni
 def test_fit_is_epochs_of_partial_fit(walk: Recording, cmap: CognitiveMap) -> None:
     streamed = CognitiveMap(charts=cmap.charts, components=cmap.components, epoch=len(walk), seed=0)
     order = np.random.default_rng(0)
-    for _ in range(sum(EPOCHS.values())):
-        rows = order.permutation(len(walk))
-        streamed.partial_fit(walk.views[rows], walk.odours[rows])
+    for stage, epochs in EPOCHS.items():
+        for _ in range(epochs):
+            rows = np.arange(len(walk)) if stage == IN_ORDER else order.permutation(len(walk))
+            streamed.partial_fit(walk.views[rows], walk.odours[rows])
     assert streamed.trusted_ == cmap.trusted_
     some = slice(0, 200)
     a, b = streamed.perceive(walk.views[some]), cmap.perceive(walk.views[some])
@@ -110,6 +113,34 @@ def test_in_the_dark_there_is_place_only(walk: Recording, cmap: CognitiveMap) ->
     ]
     assert 0.3 < agreement[0] < agreement[1]
     assert agreement[1] > 0.5
+
+
+def test_order_teaches_a_metric_map_and_shuffled_views_do_no_harm(
+    walk: Recording, camera: Camera, grow: Grow
+) -> None:
+    walk = explore(Arena.load("open_field"), Brownian(), camera, views=len(walk), seed=1)
+    order = np.random.default_rng(3).permutation(len(walk))
+    led, lost = grow(walk), grow(replace(walk, views=walk.views[order], odours=walk.odours[order]))
+    assert led.trusted_
+    assert lost.trusted_
+    assert not led.metric_reason_
+    assert "in order" in lost.metric_reason_
+    seen, other = (grown.perceive(walk.views) for grown in (led, lost))
+    assert np.isnan(other.position).all()
+    found, plain = (score(told, walk.poses, train=(told, walk.poses)) for told in (seen, other))
+    assert found["metric_map_r2"] > 0.98
+    assert found["heading_median_deg"] < 0.8 * plain["heading_median_deg"]
+    dark = led.perceive(odours=np.exp(seen.odour))
+    np.testing.assert_allclose(dark.position, seen.position, atol=1e-3)
+
+
+def test_views_that_do_not_follow_can_be_told(walk: Recording, cmap: CognitiveMap) -> None:
+    grown = copy.deepcopy(cmap)
+    for jump in (False, True):
+        grown._layers.age.fill_(GAUGE_BEGINS * grown._layers.epoch)
+        grown.partial_fit(walk.views[:20], walk.odours[:20], jump=True)
+        grown.partial_fit(walk.views[20:21], walk.odours[20:21], jump=jump)
+        assert grown._layers.gauge.recent.isnan().any() == jump
 
 
 def test_a_coarse_map_says_so(walk: Recording) -> None:

@@ -36,6 +36,7 @@ def test_each_layer_learns_in_its_own_period_and_is_then_fixed(layers: Layers) -
         "charts": "charts.",
         "olfaction": "olfaction.",
         "cells": ("place.", "heading."),
+        "gauge": "gauge.",
         "afferents": ("place.afferents.", "heading.afferents."),
     }
     for number, stage in enumerate(STAGES):

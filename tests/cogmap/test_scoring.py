@@ -8,6 +8,8 @@ from cogmap.scoring import Perceived, score
 
 SOURCES = np.array([[-1.5, -1.0], [1.6, 0.9], [1.2, -1.1]])
 HALF = np.array([1.8, 1.3])
+BLUR = 0.05
+"""Standard deviation of the metric map along each axis, m."""
 
 
 @dataclass(frozen=True)
@@ -16,6 +18,7 @@ class Ideal:
     heading: np.ndarray
     phase: np.ndarray
     odour: np.ndarray
+    position: np.ndarray
 
 
 def walk(views: int, seed: int) -> np.ndarray:
@@ -35,6 +38,7 @@ def ideal(poses: np.ndarray, error: float = 0.03, seed: int = 0) -> Ideal:
         heading=(10 * np.exp(5 * (np.cos(phase[:, None] - preferred) - 1))).astype(np.float32),
         phase=phase.astype(np.float32),
         odour=-np.linalg.norm(poses[:, None, :2] - SOURCES, axis=2).astype(np.float32),
+        position=(poses[:, :2] + rng.normal(0, BLUR, (len(poses), 2))).astype(np.float32),
     )
 
 
@@ -53,7 +57,8 @@ def test_ideal_population_scores_high(train: tuple[Ideal, np.ndarray], poses: np
     record = score(ideal(poses, seed=1), poses, train=train)
     assert set(record) == {
         "position_median_m", "position_p95_m", "heading_median_deg", "heading_p95_deg", "heading_resultant",
-        "place_cells_passing", "place_coverage", "heading_cells_passing",
+        "place_cells_passing", "place_coverage", "heading_cells_passing", "metric_map_r2",
+        "metric_map_median_m",
     }  # fmt: skip
     assert all(type(value) is float for value in record.values())
     assert record["position_median_m"] < record["position_p95_m"] < 0.06
@@ -64,6 +69,39 @@ def test_ideal_population_scores_high(train: tuple[Ideal, np.ndarray], poses: np
     assert record["place_cells_passing"] == 1
     assert record["place_coverage"] > 0.99
     assert record["heading_cells_passing"] == 1
+    # A Rayleigh variable, and the variance of a uniform one.
+    assert record["metric_map_median_m"] == pytest.approx(BLUR * np.sqrt(2 * np.log(2)), rel=0.05)
+    assert record["metric_map_r2"] == pytest.approx(1 - 2 * BLUR**2 / np.sum(HALF**2 / 3), abs=1e-4)
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_a_metric_map_counts_after_one_similarity_of_the_training_views(
+    train: tuple[Ideal, np.ndarray],
+    poses: np.ndarray,
+    mirror: bool,  # noqa: FBT001
+) -> None:
+    def moved(activity: Ideal, shift: float = 5.0) -> Ideal:
+        z = activity.position @ np.array([1, 1j])
+        z = (2 + 1j) * (z.conj() if mirror else z) + shift
+        return replace(activity, position=np.stack([z.real, z.imag], axis=1).astype(np.float32))
+
+    activity = ideal(poses, seed=1)
+    known = moved(train[0]), train[1]
+    expected = score(activity, poses, train=train)
+    assert score(moved(activity), poses, train=known) == pytest.approx(expected, abs=1e-5)
+    beside = score(moved(activity, 5.0 + np.sqrt(5)), poses, train=known)  # 1 m away
+    assert beside["metric_map_median_m"] == pytest.approx(1, abs=0.01)
+    assert beside["metric_map_r2"] < expected["metric_map_r2"] - 0.5
+
+
+def test_without_a_metric_map_its_figures_are_left_out(
+    train: tuple[Ideal, np.ndarray], poses: np.ndarray
+) -> None:
+    activity = ideal(poses)
+    none = replace(activity, position=np.full_like(activity.position, np.nan))
+    record = score(none, poses, train=train)
+    assert not {name for name in record if name.startswith("metric_map")}
+    assert record["position_median_m"] > 0
 
 
 def test_shuffled_population_fails(train: tuple[Ideal, np.ndarray], poses: np.ndarray) -> None:

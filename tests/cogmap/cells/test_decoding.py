@@ -4,13 +4,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import procrustes
 
 from cogmap.cells.decoding import (
     HeadingFrame,
+    MapFrame,
     decode_positions,
     fit_heading_frame,
+    fit_map_frame,
     heading_errors,
     likeliest,
+    place_map,
     position_errors,
 )
 from cogmap.errors import CogmapError
@@ -102,3 +106,36 @@ def test_bad_input_is_refused(wander: Callable) -> None:
         fit_heading_frame(headings * np.nan, headings)
     with pytest.raises(CogmapError, match="headings is not finite"):
         heading_errors(headings, headings * np.nan, HeadingFrame(0.0, mirror=False))
+
+
+@settings(deadline=None)
+@given(angles, st.floats(0.1, 10), st.complex_numbers(max_magnitude=10), st.booleans())
+def test_a_similarity_is_recovered(turn: float, size: float, shift: complex, mirror: bool) -> None:  # noqa: FBT001
+    true = np.random.default_rng(0).uniform(-2, 2, (300, 2))
+    z = (true @ [1, 1j] - shift) / (size * np.exp(1j * turn))
+    z = z.conj() if mirror else z
+    mapped = np.stack([z.real, z.imag], axis=1)
+    frame = fit_map_frame(mapped, true)
+    assert frame.mirror == mirror
+    np.testing.assert_allclose([frame.scale, frame.shift], [size * np.exp(1j * turn), shift], atol=1e-6)
+    np.testing.assert_allclose(place_map(mapped, frame), true, atol=1e-6)
+
+
+def test_the_similarity_is_that_of_procrustes() -> None:
+    rng = np.random.default_rng(1)
+    true = rng.uniform(-2, 2, (300, 2))
+    mapped = true @ [[0.2, 0.5], [0.5, -0.2]] + rng.normal(0, 0.1, true.shape)
+    *_, disparity = procrustes(true, mapped)
+    left = place_map(mapped, fit_map_frame(mapped, true)) - true
+    assert np.sum(left**2) / np.sum((true - true.mean(axis=0)) ** 2) == pytest.approx(disparity)
+
+
+def test_bad_maps_are_refused() -> None:
+    points = np.zeros((5, 2))
+    assert fit_map_frame(points, points) == MapFrame(0, 0, mirror=False)
+    with pytest.raises(CogmapError, match="mapped is not finite"):
+        fit_map_frame(points * np.nan, points)
+    with pytest.raises(CogmapError, match="positions is not finite"):
+        fit_map_frame(points, points * np.nan)
+    with pytest.raises(CogmapError, match="mapped is not finite"):
+        place_map(points + np.inf, MapFrame(1, 0, mirror=False))

@@ -27,6 +27,22 @@ def test_agrees_with_astropy_and_neurospatial(views: int, rate: float, seed: int
         np.testing.assert_allclose((z[cell], p[cell]), its_test(directions), atol=1e-12)
 
 
+@pytest.mark.parametrize("spikes", [7, 49, 50])
+def test_the_bracket_is_for_fewer_than_fifty_spikes_and_p_is_never_negative(spikes: int) -> None:
+    headings = np.random.default_rng(0).vonmises(1.0, 0.3, spikes)
+    for where in (headings, np.full(spikes, 0.5)):
+        p = rayleigh_test(np.ones((spikes, 1)), where, bins=None).p_value[0]
+        np.testing.assert_allclose(p, np.clip(rayleightest(where), 0, 1), rtol=1e-12)
+    assert (rayleightest(np.full(spikes, 0.5)) < 0) == (spikes == 7)
+
+
+def test_a_single_spike_is_no_evidence() -> None:
+    expected_spikes = np.array([[0.01, 0.0, 1.0, 1.01], [0, 0.5, 0, 0]])
+    z, p = rayleigh_test(expected_spikes, np.array([0.3, 2.0]))
+    np.testing.assert_array_equal(np.isnan(z), [True, True, True, False])
+    np.testing.assert_array_equal(np.isnan(p), np.isnan(z))
+
+
 def test_even_looking_weighs_nothing(von_mises: Callable) -> None:
     headings = np.tile(np.linspace(-np.pi, np.pi, 360, endpoint=False) + 1e-3, 3)
     spikes = np.random.default_rng(0).poisson(von_mises(headings)[:, None] / 50)

@@ -9,11 +9,12 @@ from arena import Arena
 from cogmap import CogmapError, CognitiveMap
 from cogmap.experiments.demo import demo
 
-FIGURES = ["barcodes", "compass", "heading_cells", "place_cells", "position", "room", "views"]
+FIGURES = ["barcodes", "compass", "heading_cells", "metric_map", "place_cells", "position", "room", "views"]
 KEYS = {
     "position_median_m", "position_p95_m", "nose_position_median_m", "nose_position_p95_m",
     "heading_median_deg", "heading_p95_deg", "heading_resultant", "place_cells_passing", "place_coverage",
-    "heading_cells_passing", "betti_view_manifold", "betti_fused", "betti_place", "betti_heading",
+    "heading_cells_passing", "metric_map_r2", "metric_map_median_m", "metric_reason",
+    "betti_view_manifold", "betti_fused", "betti_place", "betti_heading",
     "seconds", "peak_memory_bytes", "views", "trusted",
 }  # fmt: skip
 
@@ -21,7 +22,7 @@ KEYS = {
 @pytest.fixture(scope="module")
 def result(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
     out = tmp_path_factory.mktemp("demo") / "out"
-    return out, demo(Arena.load("furnished"), out, views=3000, landmarks=(150, 60), seed=0)
+    return out, demo(Arena.load("furnished"), out, views=3000, landmarks=(150, 60), seed=1)
 
 
 def test_it_writes_every_figure_the_map_and_the_metrics(result: tuple[Path, dict[str, Any]]) -> None:

@@ -8,7 +8,7 @@ from cogmap.experiments.result import Result
 
 @pytest.fixture(scope="module")
 def result() -> Result:
-    return experiment("fusion", views=3000)
+    return experiment("fusion", views=4000)
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +37,18 @@ def test_both_give_both(metrics: dict[str, Any]) -> None:
     assert fused["heading_cells_passing"] > 0.8
     assert fused["in_field_direction_vector"] < 0.25
     assert 2 * fused["position_median_m"] < fused["nose_position_median_m"]
+
+
+def test_every_figure_that_applies_is_there(metrics: dict[str, Any]) -> None:
+    cells = {"place_cells_passing", "place_coverage", "heading_cells_passing", "in_field_direction_vector"}
+    position = {"position_median_m", "position_p95_m"}
+    heading = {"heading_median_deg", "heading_p95_deg", "heading_resultant"}
+    metric = {"metric_map_r2", "metric_map_median_m"}
+    nose = {f"nose_{key}" for key in position}
+    assert metrics["vision_only"].keys() >= cells
+    assert metrics["olfaction_only"].keys() >= cells | position
+    assert metrics["fused"].keys() >= cells | position | heading | metric | nose | {"trusted", "seconds"}
+    assert metrics["fused"]["metric_map_r2"] > 0.9
 
 
 def test_metrics_are_those_of_the_table(result: Result) -> None:

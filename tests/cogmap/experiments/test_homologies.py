@@ -14,6 +14,7 @@ def test_ideal_populations_have_the_shape_of_what_they_code() -> None:
         heading=20 * np.exp(4 * np.cos(heading[:, None] - preferred) - 4),
         phase=heading,
         odour=xy,
+        position=xy,
     )
     codes = np.column_stack([xy, 0.8 * np.cos(heading), 0.8 * np.sin(heading)])
     found = homologies(codes, activity, landmarks=(150, 80))

@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from arena import Arena
-from cogmap.experiments.populations import Ground, as_one_table, competing_cells
+from arena import Arena, Brownian, Camera
+from cogmap.experiments.populations import Ground, as_one_table, competing_cells, grow_map
+from cogmap.experiments.setting import Setting
 
 
 @pytest.fixture(scope="module")
@@ -54,3 +57,13 @@ def test_cells_that_compete_for_places_are_place_cells(ground: Ground) -> None:
     (rates,) = competing_cells(ground.known[:, :2], ground.poses[:, :2], seed=0, cells=60)
     assert ground.measure(rates).place_figures["place_cells_passing"] > 0.9
     assert ground.position(ground.known[:, :2], ground.poses[:, :2])["position_median_m"] < 0.05
+
+
+def test_a_map_is_grown_as_the_setting_has_it() -> None:
+    setting = Setting(Arena.load("furnished"), 120, seed=3)
+    walk = setting.explore(Brownian(), Camera.panoramic(90, 15))
+    usual = grow_map(setting, walk)
+    assert (usual.charts, usual.seed, usual.place_cells) == (40, 3, 150)
+    other = grow_map(replace(setting, map={"charts": 30, "place_cells": 20}), walk)
+    assert (other.charts, other.seed) == (30, 3)
+    assert other.perceive(odours=walk.odours).place.shape == (120, 20)

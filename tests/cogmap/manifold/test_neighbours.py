@@ -175,3 +175,18 @@ def test_stored_zeros_are_no_edges() -> None:
 def test_bad_input_gets_one_sentence(X: np.ndarray, neighbours: int, message: str) -> None:
     with pytest.raises(CogmapError, match=message):
         neighbour_graph(X, neighbours)
+
+
+def test_one_sided_edges_are_left_out_but_for_the_nearest() -> None:
+    # A crowd, and a loner whose neighbours are all in the crowd and have nearer ones.
+    crowd = np.random.default_rng(0).normal(size=(60, 2))
+    points = np.vstack([crowd, [[9.0, 0.0]]])
+    whole, mutual, some = (neighbour_graph(points, 6, one_sided=count) for count in (None, 0, 2))
+    assert (whole[[60]] > 0).sum() == 6
+    assert (mutual[[60]] > 0).sum() == 0
+    nearest = np.argsort(np.linalg.norm(crowd - points[60], axis=1))[:2]
+    assert set(np.flatnonzero(some[[60]].toarray())) == set(nearest)
+    distance = np.linalg.norm(points[:, None] - points, axis=2)
+    rank = np.argsort(np.argsort(distance, axis=1), axis=1)
+    expected = (rank <= 6) & (rank.T <= 6) & ~np.eye(61, dtype=bool)
+    np.testing.assert_array_equal(mutual.toarray() > 0, expected)

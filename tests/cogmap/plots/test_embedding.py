@@ -11,7 +11,7 @@ RING = np.column_stack([np.cos(HEADINGS), np.sin(HEADINGS)])
 
 
 def test_a_ring_is_drawn_in_the_colours_of_its_headings() -> None:
-    figure = plot_embedding(RING, HEADINGS)
+    figure = plot_embedding(RING, HEADINGS, coordinates=(0, 1))
     points = figure.axes[0].collections[0]
     np.testing.assert_allclose(points.get_offsets(), RING)
     np.testing.assert_allclose(points.get_facecolor(), direction_colours(HEADINGS))
@@ -30,18 +30,16 @@ def test_three_coordinates_are_drawn_in_space_and_coloured_by_the_others(tmp_pat
 
 def test_of_many_views_some_are_drawn() -> None:
     many = np.tile(RING, (40, 1))
-    figure = plot_embedding(many, np.tile(HEADINGS, 40))
+    figure = plot_embedding(many, np.tile(HEADINGS, 40), coordinates=(0, 1))
     assert len(figure.axes[0].collections[0].get_offsets()) == POINTS
 
 
-@pytest.mark.parametrize(
-    ("embedding", "says"),
-    [
-        (RING[:, :1], "1 coordinates"),
-        (np.ones((400, 4)), "4 coordinates"),
-        (RING * np.nan, "embedding is not finite"),
-    ],
-)
-def test_what_cannot_be_drawn_is_refused(embedding: np.ndarray, says: str) -> None:
-    with pytest.raises(CogmapError, match=says):
-        plot_embedding(embedding, HEADINGS)
+@pytest.mark.parametrize("coordinates", [(0,), (0, 1, 2), (0, 1, 0, 1)])
+def test_coordinates_that_cannot_be_drawn_are_refused(coordinates: tuple[int, ...]) -> None:
+    with pytest.raises(CogmapError, match="choose two or three"):
+        plot_embedding(RING, HEADINGS, coordinates=coordinates)
+
+
+def test_what_is_not_finite_is_refused() -> None:
+    with pytest.raises(CogmapError, match="embedding is not finite"):
+        plot_embedding(RING * np.nan, HEADINGS, coordinates=(0, 1))

@@ -1,0 +1,43 @@
+"""Views as small blurred pictures, which change smoothly from pose to pose."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import cv2
+import numpy as np
+from jaxtyping import Float32
+
+from cogmap.inputs import check_views
+from cogmap.threads import one_thread
+
+WIDTH, HEIGHT = 20, 15
+"""Pixels of a code."""
+BLOCK = 256
+"""Views read at a time."""
+
+
+def image_codes(views: Any) -> Float32[np.ndarray, "views features"]:
+    """Reduce each view to 20×15 pixels of three colours: means over twice that, blurred by one of its pixels.
+
+    Noise of single pixels averages out, and a step of the camera that moves edges by a fraction of a pixel of
+    the code changes it in proportion. Views are read block by block and may lie on disk.
+
+    Raises
+    ------
+    CogmapError
+        For views that are not uint8 images (views, height, width, 3).
+    """
+    check_views(views)
+    codes = np.empty((views.shape[0], 3 * WIDTH * HEIGHT), np.float32)
+    with one_thread():
+        for first in range(0, len(codes), BLOCK):
+            for row, view in enumerate(np.asarray(views[first : first + BLOCK]), start=first):
+                codes[row] = _code(view)
+    return codes
+
+
+def _code(view: np.ndarray) -> Float32[np.ndarray, "features"]:
+    fine = cv2.resize(view.astype(np.float32), (2 * WIDTH, 2 * HEIGHT), interpolation=cv2.INTER_AREA)
+    blurred = cv2.GaussianBlur(fine, (0, 0), 1.0)
+    return np.asarray(cv2.resize(blurred, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)).ravel()

@@ -1,0 +1,128 @@
+"""Where a view was taken, in terms of remembered views."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+from jaxtyping import Float, Int
+
+from cogmap.errors import CogmapError
+from cogmap.inputs import checked_count
+from cogmap.manifold.cloud import Cloud, checked_cloud
+from cogmap.manifold.nearest import Metric, nearest_points
+from cogmap.threads import one_thread
+
+BLOCK = 128
+"""Queries placed at a time."""
+
+
+class Location(NamedTuple):
+    """Remembered views near to each query, and how much of each makes up the query."""
+
+    indices: Int[np.ndarray, "queries neighbours"]
+    """The nearest first; −1 where there are no more."""
+    weights: Float[np.ndarray, "queries neighbours"]
+    """They sum to one, and may be negative; 0 where there is no view, NaN where there is none at all."""
+
+
+class Localiser:
+    r"""Places views among remembered ones by affine weights; whatever these say of themselves interpolates.
+
+    Views with similar `features`, such as bags of words, are near, but how near features cannot say. So the
+    weights w, Σw = 1, are those of a ridge regression on the codes c of the nearest k views, whose span is
+    the tangent space of the manifold there. For a query with code q, and X the codes minus their mean c̄,
+
+    .. math:: w = \frac{1}{k} + \frac{1}{k} X (X^\top X / k + \lambda t I)^{-1} (q - \bar c),
+
+    where t is the total variance of the k codes. Any quantity y that varies linearly over the neighbourhood
+    is then Σ w y: a regression of y on the codes, without y having been asked for.
+
+    Parameters
+    ----------
+    features
+        Of the remembered views, by which the nearest are found, (views, features), dense or sparse.
+    codes
+        Of the same views, `image_codes`, (views, codes); the features themselves when None.
+    neighbours
+        k; all there are when these are fewer.
+    ridge
+        λ. Less follows noise, more stays near the middle of the neighbours.
+    metric
+        Of the features; "cosine" for bags of words.
+
+    Raises
+    ------
+    CogmapError
+        From `locate`, for arrays that are not finite or do not fit each other.
+
+    References
+    ----------
+    Roweis & Saul (2000), Nonlinear dimensionality reduction by locally linear embedding: affine weights.
+    """
+
+    def __init__(
+        self,
+        features: Cloud,
+        *,
+        codes: Float[np.ndarray, "views codes"] | None = None,
+        neighbours: int = 60,
+        ridge: float = 1e-4,
+        metric: Metric = "cosine",
+    ) -> None:
+        self.features = features
+        self.codes = codes
+        self.neighbours = neighbours
+        self.ridge = ridge
+        self.metric = metric
+
+    def locate(self, query: Cloud, *, codes: Float[np.ndarray, "queries codes"] | None = None) -> Location:
+        """Place views given by their features, (queries, features), and codes if the remembered have any."""
+        if (codes is None) != (self.codes is None):
+            raise CogmapError("give codes of both the remembered views and the query, or of neither")
+        if not self.ridge > 0:
+            raise CogmapError(f"ridge is {self.ridge}; give a number above 0")
+        known = _codes(self.features if self.codes is None else self.codes, self.features.shape[0])
+        asked = _codes(query if codes is None else codes, query.shape[0])
+        if known.shape[1] != asked.shape[1]:
+            raise CogmapError(
+                f"codes of the query have {asked.shape[1]} features but those of the views {known.shape[1]}; "
+                "make both alike"
+            )
+        count = min(checked_count("neighbours", self.neighbours), self.features.shape[0])
+        indices = nearest_points(self.features, count, queries=query, metric=self.metric).indices
+        weights = np.empty(indices.shape)
+        with one_thread():
+            for first in range(0, len(indices), BLOCK):
+                block = slice(first, first + BLOCK)
+                weights[block] = self._weigh(known, indices[block], asked[block])
+        return Location(indices, weights)
+
+    def _weigh(
+        self,
+        known: Float[np.ndarray, "views codes"],
+        indices: Int[np.ndarray, "queries neighbours"],
+        asked: Float[np.ndarray, "queries codes"],
+    ) -> Float[np.ndarray, "queries neighbours"]:
+        share = (indices >= 0) / np.maximum((indices >= 0).sum(axis=1, keepdims=True), 1)
+        near = known[indices].astype(np.float64)
+        mean = np.einsum("qk,qkc->qc", share, near)
+        near -= mean[:, None]
+        near *= np.sqrt(share)[:, :, None]
+        products = near @ near.transpose(0, 2, 1)
+        spread = np.trace(products, axis1=1, axis2=2)
+        # Equal codes have no spread, and then no view is more like the query than another.
+        products += np.eye(len(share[0])) * (self.ridge * spread + (spread == 0))[:, None, None]
+        sought = near @ (asked - mean)[:, :, None]
+        weights: np.ndarray = share + np.sqrt(share) * np.linalg.solve(products, sought)[:, :, 0]
+        weights[indices[:, 0] < 0] = np.nan
+        return weights
+
+
+def _codes(codes: Cloud, views: int) -> Float[np.ndarray, "views codes"]:
+    checked = checked_cloud(codes)
+    if checked.shape[0] != views:
+        raise CogmapError(f"there are {checked.shape[0]} codes but {views} views; give one code per view")
+    dense: np.ndarray = checked.toarray() if sp.issparse(checked) else checked
+    return dense

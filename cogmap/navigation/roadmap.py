@@ -1,0 +1,135 @@
+"""A way from one view to another through remembered views."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from jaxtyping import Float, Int
+from scipy.sparse.csgraph import dijkstra
+from sklearn.preprocessing import normalize
+
+from cogmap.errors import CogmapError
+from cogmap.manifold.cloud import Checked, Cloud, checked_cloud
+from cogmap.manifold.nearest import Metric
+from cogmap.manifold.neighbours import Components, components, neighbour_graph
+
+ONE_SIDED = 5
+"""Nearest views that a view is joined to even when it is not among theirs."""
+ABSENT = -9999
+"""What scipy's Dijkstra calls the predecessor of a point that has none."""
+
+
+class VisualRoadmap:
+    r"""Plans routes as sequences of remembered views: shortest paths in their neighbour graph.
+
+    The source and the destination are each taken for the remembered view nearest to them, and Dijkstra's
+    algorithm runs between these over edges of cost
+
+    .. math:: c_{ij} = \lVert f_i - f_j \rVert^p .
+
+    A p above 1 takes several short steps rather than a long one, which may lead through an obstacle and whose
+    length the features understate. Views are remembered from where a body can be, so the way is free wherever
+    steps are shorter than what is between. The graph is made at the first plan.
+
+    Parameters
+    ----------
+    features
+        Of the remembered views, (views, features), dense or sparse: `PanoramaCode`, `BagOfWords`.
+    neighbours
+        How many nearest views each is joined to, where these count it among theirs; to its five nearest in
+        any case.
+    power
+        p.
+    metric
+        Of the features; "cosine" for bags of words.
+
+    Raises
+    ------
+    CogmapError
+        From `plan`, for features that do not fit, and when there is no way.
+
+    References
+    ----------
+    Algorithm 1 of the paper on visual maps. Kavraki, Švestka, Latombe & Overmars (1996), Probabilistic
+    roadmaps for path planning in high-dimensional configuration spaces.
+    """
+
+    def __init__(
+        self,
+        features: Cloud,
+        *,
+        neighbours: int = 45,
+        power: float = 1.25,
+        metric: Metric = "euclidean",
+    ) -> None:
+        self.features = features
+        self.neighbours = neighbours
+        self.power = power
+        self.metric = metric
+
+    def plan(self, view_a: Cloud, view_b: Cloud) -> Int[np.ndarray, "steps"]:
+        """Give the indices of the views on the way from view a to view b, given by their features.
+
+        Parameters
+        ----------
+        view_a, view_b
+            One view each, (features,) or (1, features).
+
+        Raises
+        ------
+        CogmapError
+            When no chain of remembered views joins them.
+        """
+        start, goal = self.nearest(view_a), self.nearest(view_b)
+        labels = self.pieces.labels
+        if labels[start] != labels[goal]:
+            sizes = self.pieces.sizes
+            raise CogmapError(
+                f"no way leads from view {start} to view {goal}: they are in separate pieces of the "
+                f"neighbour graph, of {sizes[labels[start]]} and {sizes[labels[goal]]} views; "
+                "explore between them or ask for more neighbours"
+            )
+        before = dijkstra(self.graph, indices=[goal], return_predecessors=True)[1][0]
+        route = [start]
+        while before[route[-1]] != ABSENT:
+            route.append(int(before[route[-1]]))
+        return np.array(route)
+
+    def nearest(self, view: Cloud) -> int:
+        """Give the index of the remembered view nearest to one given by its features."""
+        asked = self._prepared(view if sp.issparse(view) or view.ndim != 1 else view[None])
+        known, squares = self._known
+        if asked.shape != (1, known.shape[1]):
+            raise CogmapError(
+                f"the view has features of shape {view.shape}; give one row of {known.shape[1]} features"
+            )
+        products = known @ (asked.toarray() if sp.issparse(asked) else asked)[0]
+        return int(np.argmin(squares - 2 * products))
+
+    @cached_property
+    def graph(self) -> sp.csr_array:
+        """Symmetric costs between neighbours."""
+        if self.features.shape[0] == 1:
+            return sp.csr_array((1, 1))
+        graph = neighbour_graph(self.features, self.neighbours, metric=self.metric, one_sided=ONE_SIDED)
+        # Equal views stay joined: the power of a tiny length may be zero, which is no edge.
+        graph.data = np.maximum(graph.data**self.power, np.finfo(float).tiny)
+        return graph
+
+    @cached_property
+    def pieces(self) -> Components:
+        """The connected pieces of the graph."""
+        return components(self.graph)
+
+    @cached_property
+    def _known(self) -> tuple[Checked, Float[np.ndarray, "views"]]:
+        known = self._prepared(self.features)
+        squares = known.multiply(known).sum(axis=1) if sp.issparse(known) else (known**2).sum(axis=1)
+        return known, np.asarray(squares)
+
+    def _prepared(self, views: Cloud) -> Checked:
+        checked = checked_cloud(views)
+        directions: Checked = normalize(checked) if self.metric == "cosine" else checked
+        return directions

@@ -1,0 +1,202 @@
+"""The gauge of heading and a metric map, from the order of views alone: a body goes where it looks."""
+
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Bool, Complex, Float
+from torch import Tensor, nn
+
+from neurons.place_cells import PlaceCells
+
+LAG = 3
+"""Steps from view to view in a displacement: long against the error of recall, short against the room."""
+STRAIGHT = 0.25
+"""Largest turn per step of a displacement, rad; a look around turns more."""
+RIDGE = 1e-3
+"""Prior on the map, as a fraction of the mean square of a feature's displacement."""
+ROUNDS = 100
+"""Rounds of the power iteration, which changes nothing any more after about fifty."""
+BLOCK = 128
+"""Consecutive displacements that fall to the same half of the evidence."""
+FORETOLD = 0.8
+"""Least share of the displacements of one half of a walk that the other half foretells, in a map worth
+having: .88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each other,
+whatever the headings do."""
+
+
+class Gauged(NamedTuple):
+    """What the gauge makes of smells."""
+
+    position: Float[Tensor, "views 2"]
+    """In the map's own frame, in steps from view to view; NaN before it is learnt."""
+    offset: Float[Tensor, "views"]
+    """By how much the compass is to be corrected there, rad; 0 before it is learnt."""
+
+
+class Gauge(nn.Module):
+    """Places get positions, and the compass an offset at each, so that views follow each other ahead.
+
+    The place cells share a smell o out as w(o), Σ w = 1. Each holds an affine map of its surroundings and an
+    offset of heading f_p, |f_p| = 1, both as complex numbers:
+
+        x(o) = Σ_p w_p (x_p + B_p (o − c_p)) = b(o)·β,        e^{iθ} = e^{iθ̂} f(o),  f(o) = Σ_p w_p f_p.
+
+    Where a body looks it goes: for views t and t + 3 with no turn between them, v = b(o_{t+3}) − b(o_t) and u
+    the mean of e^{iθ̂} on the way, v·β should be u f. With the sums S = Σ v vᵀ and D = Σ w ū vᵀ least squares
+    gives β = S⁻¹ Dᴴ f, and the displacements that agree best with the compass give f, in turn the phases of
+
+        f ← phase(D S⁻¹ Dᴴ f):
+
+    again a synchronisation, of places connected by walking. The sums are kept for two halves of the walk,
+    alternating; unless the map of either foretells the displacements of the other, nothing is learnt, and
+    `complain` says so. Sums can be added to by a stream and merged between maps of the same place cells.
+
+    Parameters
+    ----------
+    cells, odorants
+        Of the place cells that it stands on.
+
+    References
+    ----------
+    Singer (2011), Angular synchronization by eigenvectors and semidefinite programming. ACHA 30.
+    Boumal (2016), Nonconvex phase synchronization. SIAM J. Optimization 26 (the power iteration).
+    """
+
+    spread: Tensor
+    ahead: Tensor
+    shared: Tensor
+    counted: Tensor
+    seen: Tensor
+    recent: Tensor
+    foretold: Tensor
+    positions: Tensor
+    offsets: Tensor
+
+    def __init__(self, cells: int, odorants: int) -> None:
+        super().__init__()
+        features = cells * (odorants + 1)
+        self.register_buffer("spread", torch.zeros(2, features, features))
+        self.register_buffer("ahead", torch.zeros(2, cells, features, 2))
+        self.register_buffer("shared", torch.zeros(2, cells, cells))
+        self.register_buffer("counted", torch.zeros(2, 2))
+        self.register_buffer("seen", torch.zeros((), dtype=torch.int64))
+        self.register_buffer("recent", torch.full((LAG, odorants + 1), torch.nan))
+        self.register_buffer("foretold", torch.full((2,), torch.nan))
+        self.register_buffer("positions", torch.full((features, 2), torch.nan))
+        self.register_buffer("offsets", torch.zeros(cells))
+
+    def forward(self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]) -> Gauged:
+        """Tell the position of smells and the offset of the compass there."""
+        share, patches = _patches(place, log_odours)
+        turn = torch.atan2(share @ self.offsets.sin(), share @ self.offsets.cos())
+        return Gauged(patches @ self.positions, turn)
+
+    def jump(self) -> None:
+        """Forget the last views: the next one does not follow them."""
+        self.recent.fill_(torch.nan)
+
+    def partial_fit(
+        self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"], headings: Float[Tensor, "views"]
+    ) -> None:
+        """Add the next views of a walk, in order; they follow those of the last call."""
+        walk = torch.cat([self.recent, torch.cat([log_odours, headings[:, None]], dim=1)])
+        self.recent = walk[-LAG:].clone()
+        straight, direction = _directions(walk[:, -1])
+        half = (self.seen + torch.arange(len(straight))) // BLOCK % 2
+        self.seen += len(straight)
+        share, patches = _patches(place, walk[:, :-1])
+        moved = patches[LAG:] - patches[:-LAG]
+        # the middle of the way: its views are not those whose errors the displacement holds
+        under = share[1:-1].unfold(0, LAG - 1, 1).mean(dim=2)
+        for number in (0, 1):
+            mine = straight & (half == number)
+            v, w, u = moved[mine], under[mine], direction[mine]
+            self.spread[number] += v.T @ v
+            back = (w[:, :, None] * torch.view_as_real(u.conj().resolve_conj())[:, None]).movedim(2, 0)
+            self.ahead[number] += (back.mT @ v).movedim(0, 2)
+            pace = u.abs().square()
+            self.shared[number] += w.T @ (pace[:, None] * w)
+            self.counted[number] += torch.stack([pace.sum(), mine.sum()])
+
+    def settle(self) -> None:
+        """Learn positions and offsets from the sums, if either half of the walk foretells the other."""
+        halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
+        if min(half.pairs for half in halves) < len(self.offsets):
+            return
+        one, other = halves
+        self.foretold = torch.tensor([one.foretold(*other.solve()), other.foretold(*one.solve())]).float()
+        if not self.complain():
+            positions, turns = self._evidence(slice(0, 2)).solve()
+            self.positions = torch.view_as_real(positions).float()
+            self.offsets = turns.angle().float()
+
+    def complain(self) -> str:
+        """Say why nothing is learnt, or nothing when it is."""
+        if self.foretold.isnan().any():
+            return (
+                f"{int(self.counted[:, 1].sum())} of {int(self.seen)} views were come to straight ahead, too "
+                "few for a metric map; show it longer walks, in order"
+            )
+        share = float(self.foretold.min())
+        if share < FORETOLD:
+            return (
+                f"one half of the walk foretells {share:.2f} of the displacements of the other, less than "
+                f"{FORETOLD}: what follows a view does not lie ahead of it; show it longer walks, in order"
+            )
+        return ""
+
+    def _evidence(self, halves: slice) -> "_Evidence":
+        power, pairs = self.counted[halves].sum(dim=0).tolist()
+        return _Evidence(
+            self.spread[halves].double().sum(dim=0),
+            torch.view_as_complex(self.ahead[halves].double().sum(dim=0)),
+            self.shared[halves].double().sum(dim=0),
+            power,
+            pairs,
+        )
+
+
+class _Evidence(NamedTuple):
+    """Sums over displacements: S, D, Σ |u|² w wᵀ, Σ |u|², and how many."""
+
+    spread: Float[Tensor, "features features"]
+    ahead: Complex[Tensor, "cells features"]
+    shared: Float[Tensor, "cells cells"]
+    power: float
+    pairs: float
+
+    def solve(self) -> tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]:
+        """Give β and f."""
+        prior = RIDGE * self.spread.diagonal().mean() * torch.eye(len(self.spread), dtype=torch.double)
+        parts = torch.view_as_real(self.ahead.mH.resolve_conj())
+        solved = torch.linalg.solve(self.spread + prior, parts.flatten(1)).reshape(parts.shape)
+        placing = torch.view_as_complex(solved.contiguous())
+        turns = torch.ones(len(self.ahead), dtype=torch.cdouble)
+        agreement = self.ahead @ placing
+        for _ in range(ROUNDS):
+            turns = torch.sgn(agreement @ turns)
+        return placing @ turns, turns
+
+    def foretold(self, positions: Complex[Tensor, "features"], turns: Complex[Tensor, "cells"]) -> float:
+        """Share of Σ |u f|² that is left when Σ |v·β − u f|² is taken away, for β and f learnt elsewhere."""
+        moved = (positions.conj() @ self.spread.to(torch.cdouble) @ positions).real
+        looked = (turns.conj() @ self.shared.to(torch.cdouble) @ turns).real
+        both = (turns.conj() @ self.ahead @ positions).real
+        return 1 - float(moved + looked - 2 * both) / self.power
+
+
+def _directions(headings: Float[Tensor, "views"]) -> tuple[Bool[Tensor, "ways"], Complex[Tensor, "ways"]]:
+    """Tell of each view and the one `LAG` later whether the way is straight, and the mean heading on it."""
+    heading = torch.polar(torch.ones_like(headings), headings)
+    turned = (heading[1:] * heading[:-1].conj()).angle().abs().unfold(0, LAG, 1)
+    steps = ((heading[1:] + heading[:-1]) / 2).unfold(0, LAG, 1)
+    return (turned < STRAIGHT).all(dim=1), steps.mean(dim=1)
+
+
+def _patches(
+    place: PlaceCells, log_odours: Float[Tensor, "views odorants"]
+) -> tuple[Float[Tensor, "views cells"], Float[Tensor, "views features"]]:
+    """Give the share w_p of each place cell and the features w_p (1, o − c_p)."""
+    share = place.share(log_odours)
+    beside = nn.functional.pad(log_odours[:, None] - place.centres, (1, 0), value=1.0)
+    return share, (share[:, :, None] * beside).flatten(1)

@@ -1,0 +1,193 @@
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+import torch
+from sklearn.linear_model import Ridge
+from torch import Tensor
+
+from neurons.gauge import BLOCK, LAG, RIDGE, STRAIGHT, Gauge, _patches
+from neurons.place_cells import PlaceCells
+
+SOURCES = torch.tensor([[-0.2, -0.1], [1.2, 0.1], [0.4, 1.3]])
+STEP = 0.05
+SIDE = 9
+"""Place cells along each side of the square."""
+CELLS, FEATURES = SIDE**2, 4 * SIDE**2
+
+
+class Walk(NamedTuple):
+    place: Tensor
+    heading: Tensor
+    odour: Tensor
+
+
+def smell(place: Tensor) -> Tensor:
+    return -2 * torch.cdist(place, SOURCES)
+
+
+def off(place: Tensor) -> Tensor:
+    """By how much the compass is off, rad: up to 11° each way, slowly varying."""
+    return 0.2 * torch.sin(3 * place[:, 0] + 2 * place[:, 1])
+
+
+def walk(views: int, seed: int) -> Walk:
+    """Runs in a unit square of steps ahead, and turns by more than a straight way has, at the walls."""
+    rng = np.random.default_rng(seed)
+    here, heading, track = np.array([0.5, 0.5]), 0.0, []
+    while len(track) < views:
+        ahead = here + STEP * np.array([np.cos(heading), np.sin(heading)])
+        if (np.abs(ahead - 0.5) < 0.5).all():
+            here, heading = ahead, heading + rng.normal(0, 0.03)
+        else:
+            heading += rng.choice([-1, 1]) * rng.uniform(0.3, 3)
+        track.append([*here, heading])
+    pose = torch.tensor(np.array(track), dtype=torch.float32)
+    return Walk(pose[:, :2], pose[:, 2], smell(pose[:, :2]))
+
+
+@pytest.fixture(scope="module")
+def cells() -> PlaceCells:
+    x = torch.linspace(0, 1, SIDE)
+    centres = smell(torch.cartesian_prod(x, x))
+    place = PlaceCells(len(centres), 1, 3)
+    place.centres, place.covariances = centres, 0.03 * torch.eye(3).repeat(len(centres), 1, 1)
+    return place
+
+
+@pytest.fixture(scope="module")
+def walked() -> Walk:
+    return walk(6000, 0)
+
+
+def learn(cells: PlaceCells, walk: Walk, *, batch: int = 256, settle: bool = True) -> Gauge:
+    gauge = Gauge(len(cells.centres), 3)
+    learnt = walk.heading - off(walk.place)
+    for odour, heading in zip(walk.odour.split(batch), learnt.split(batch), strict=True):
+        gauge.partial_fit(cells, odour, heading)
+    if settle:
+        gauge.settle()
+    return gauge
+
+
+def spread_of_angle(angle: Tensor) -> float:
+    """Root-mean-square deviation from the mean angle, in degrees."""
+    turned = torch.polar(torch.ones_like(angle), angle)
+    away: Tensor = (turned * turned.mean().conj()).angle()
+    return float(away.square().mean().sqrt().rad2deg())
+
+
+def test_finds_the_map_and_the_offset(cells: PlaceCells, walked: Walk) -> None:
+    gauge, fresh = learn(cells, walked), walk(1000, 1)
+    assert not gauge.complain()
+    assert gauge.foretold.min() > 0.99
+    position, offset = gauge(cells, fresh.odour)
+    z, true = (p.double().numpy() @ [1, 1j] for p in (position, fresh.place))
+    affine = np.stack([z, np.ones_like(z)], axis=1)
+    laid, *_ = np.linalg.lstsq(affine, true, rcond=None)
+    left = affine @ laid - true
+    assert 1 - np.var(left) / np.var(true) > 0.999
+    assert abs(laid[0]) == pytest.approx(LAG * STEP, rel=0.03)
+    # a place averages over its surroundings, which shrinks the offset
+    assert spread_of_angle(off(fresh.place) - offset) < 0.45 * spread_of_angle(off(fresh.place))
+
+
+def test_sums_over_straight_ways_only(cells: PlaceCells) -> None:
+    some = walk(600, 2)
+    gauge = learn(cells, some, settle=False)
+    share, patches = (part.double().numpy() for part in _patches(cells, some.odour))
+    learnt = (some.heading - off(some.place)).double().numpy()
+    spread, ahead = np.zeros((2, FEATURES, FEATURES)), np.zeros((2, CELLS, FEATURES), complex)
+    pairs = [0, 0]
+    for t in range(len(learnt) - LAG):
+        turns = np.diff(learnt[t : t + LAG + 1])
+        if np.abs(np.angle(np.exp(1j * turns))).max() < STRAIGHT:
+            half = (t + LAG) // BLOCK % 2
+            moved = patches[t + LAG] - patches[t]
+            heading = np.exp(1j * learnt[t : t + LAG + 1])
+            u = np.mean((heading[1:] + heading[:-1]) / 2)
+            spread[half] += np.outer(moved, moved)
+            ahead[half] += np.outer(share[t + 1 : t + LAG].mean(axis=0) * u.conj(), moved)
+            pairs[half] += 1
+    assert gauge.counted[:, 1].tolist() == pairs
+    assert gauge.seen == len(learnt)
+    np.testing.assert_allclose(gauge.spread, spread, atol=1e-4)
+    np.testing.assert_allclose(gauge.ahead, np.stack([ahead.real, ahead.imag], axis=3), atol=1e-4)
+
+
+def test_map_is_ridge_regression_and_the_share_foretold_what_it_leaves(
+    cells: PlaceCells, walked: Walk
+) -> None:
+    gauge = learn(cells, walked)
+    evidence = gauge._evidence(slice(0, 2))
+    positions, turns = evidence.solve()
+    torch.testing.assert_close(turns.abs(), torch.ones(CELLS, dtype=torch.double))
+    rows, wanted = [], []
+    share, patches = _patches(cells, walked.odour)
+    learnt = walked.heading - off(walked.place)
+    for t in range(len(learnt) - LAG):
+        turned = learnt[t : t + LAG + 1].diff()
+        if torch.atan2(turned.sin(), turned.cos()).abs().max() < STRAIGHT:
+            heading = torch.polar(torch.ones(LAG + 1), learnt[t : t + LAG + 1])
+            f = share[t + 1 : t + LAG].mean(dim=0).cdouble() @ turns
+            rows.append(patches[t + LAG] - patches[t])
+            wanted.append((heading[1:] + heading[:-1]).mean().cdouble() / 2 * f)
+    v, u = torch.stack(rows), torch.stack(wanted)
+    ridge = Ridge(RIDGE * float(v.square().sum(dim=0).mean()), fit_intercept=False)
+    trusted = ridge.fit(v.double().numpy(), torch.view_as_real(u).numpy()).predict(v.double().numpy())
+    mine = v.cdouble() @ positions
+    np.testing.assert_allclose(torch.view_as_real(mine), trusted, atol=1e-3)
+    left = (mine - u).abs().square().sum()
+    assert evidence.foretold(positions, turns) == pytest.approx(1 - float(left) / evidence.power, abs=1e-4)
+
+
+@pytest.mark.parametrize("batch", [1, 2, 100])
+def test_any_batches_will_do(cells: PlaceCells, batch: int) -> None:
+    some = walk(600, 2)
+    whole, parts = (learn(cells, some, batch=size, settle=False) for size in (600, batch))
+    for name, value in whole.state_dict().items():
+        torch.testing.assert_close(
+            parts.state_dict()[name], value, atol=1e-4, rtol=1e-5, equal_nan=True, msg=name
+        )
+
+
+def test_sums_of_two_walks_add_up_when_a_jump_is_told(cells: PlaceCells) -> None:
+    along = torch.stack([torch.linspace(0.1, 0.9, 2 * BLOCK), torch.full((2 * BLOCK,), 0.5)], dim=1)
+    one, other = (Walk(way, torch.zeros(len(way)), smell(way)) for way in (along, along.flip(0)))
+    apart = [learn(cells, each, settle=False) for each in (one, other)]
+    both = learn(cells, one, settle=False)
+    both.jump()
+    both.partial_fit(cells, other.odour, other.heading - off(other.place))
+    for name in ("spread", "ahead", "shared", "counted", "seen"):
+        total = sum(getattr(gauge, name) for gauge in apart)
+        torch.testing.assert_close(getattr(both, name), total, atol=1e-4, rtol=1e-5)
+
+
+def assert_left_out(gauge: Gauge, cells: PlaceCells, odour: Tensor, said: str) -> None:
+    assert said in gauge.complain()
+    position, offset = gauge(cells, odour)
+    assert position.isnan().all()
+    assert not offset.any()
+
+
+def test_shuffled_order_teaches_nothing(cells: PlaceCells, walked: Walk) -> None:
+    order = torch.randperm(len(walked.place), generator=torch.Generator().manual_seed(0))
+    views = Walk(*(part[order] for part in walked))
+    assert_left_out(learn(cells, views), cells, walked.odour, "too few")
+    lost = walked._replace(place=views.place, odour=views.odour)
+    assert_left_out(learn(cells, lost), cells, walked.odour, "foretells")
+    still = views._replace(heading=off(views.place))
+    assert_left_out(learn(cells, still), cells, walked.odour, "foretells")
+
+
+@pytest.mark.parametrize(("turn", "said"), [(0.4, "too few"), (0.1, "foretells")])
+def test_spinning_on_the_spot_teaches_nothing(cells: PlaceCells, turn: float, said: str) -> None:
+    noise = 0.02 * torch.randn(3000, 3, generator=torch.Generator().manual_seed(0))
+    place = torch.full((3000, 2), 0.4)
+    spin = Walk(place, turn * torch.arange(3000.0), smell(place) + noise)
+    assert_left_out(learn(cells, spin), cells, spin.odour, said)
+
+
+def test_without_a_compass_there_is_nothing_to_learn(cells: PlaceCells, walked: Walk) -> None:
+    blind = walked._replace(heading=torch.full_like(walked.heading, torch.nan))
+    assert_left_out(learn(cells, blind), cells, walked.odour, "0 of 6000 views")
