@@ -114,8 +114,7 @@ class VisualRoadmap:
         if self.features.shape[0] == 1:
             return sp.csr_array((1, 1))
         graph = neighbour_graph(self.features, self.neighbours, metric=self.metric, one_sided=ONE_SIDED)
-        # Equal views stay joined: the power of a tiny length may be zero, which is no edge.
-        graph.data = np.maximum(graph.data**self.power, np.finfo(float).tiny)
+        graph.data **= self.power
         return graph
 
     @cached_property

@@ -12,9 +12,6 @@ from arena import Arena
 from cogmap.cells.checks import check_array
 from cogmap.errors import CogmapError
 
-SLACK = 1e-6
-"""By how much (m) a path may leave free space, whose corners are its own vertices."""
-
 
 def shortest_lengths(
     arena: Arena, pairs: Float[np.ndarray, "pairs 2 2"], radius: float
@@ -43,13 +40,13 @@ def shortest_lengths(
     Lozano-Pérez & Wesley (1979), An algorithm for planning collision-free paths among polyhedral obstacles.
     """
     check_array("pairs", pairs.reshape(-1, 2), (None, 2))
-    free = arena.free_space(radius).buffer(SLACK)
+    free = arena.free_space(radius)
     shapely.prepare(free)
     if not shapely.contains_xy(free, pairs.reshape(-1, 2)).all():
         raise CogmapError(
             f"not all places are free for a body of radius {radius:g} m; draw them from free space"
         )
-    corners = shapely.get_coordinates(arena.free_space(radius))
+    corners = shapely.get_coordinates(free)
     seen = np.triu(_visible(free, corners[:, None], corners[None]), 1)
     known = np.where(seen, np.linalg.norm(corners[:, None] - corners[None], axis=2), 0)
     lengths = np.empty(len(pairs))

@@ -12,7 +12,6 @@ from cogmap.errors import CogmapError
 from cogmap.manifold import nearest
 from cogmap.manifold.cloud import Cloud
 from cogmap.manifold.nearest import nearest_points
-from cogmap.manifold.ranking import offer_to_columns, offer_to_rows
 
 
 def bags(n: int, rng: np.random.Generator, words: int = 60, share: float = 0.2) -> sp.csr_array:
@@ -136,19 +135,6 @@ def test_descent_is_asked_for_directions(monkeypatch: pytest.MonkeyPatch) -> Non
     # At right angles to all but a few.
     alone = np.kron(np.eye(60), np.ones((3, 4)) + np.random.default_rng(6).uniform(size=(3, 4)))
     compare_with_exact(sp.csr_array(alone), None, "cosine")
-
-
-def test_rankings_keep_the_best_whatever_the_axis() -> None:
-    scores = np.random.default_rng(4).integers(1, 9, size=(6, 30)).astype(np.float32)
-    best, names = np.zeros((6, 4), np.float32), np.full((6, 4), -1)
-    offer_to_rows(scores[:, :10], best, names, 100)
-    offer_to_rows(scores[:, 10:], best, names, 110)
-    order = np.argsort(-scores, axis=1, kind="stable")[:, :4]
-    np.testing.assert_array_equal(names, 100 + order)
-    np.testing.assert_array_equal(best, np.take_along_axis(scores, order, 1))
-    again, others = np.zeros((6, 4), np.float32), np.full((6, 4), -1)
-    offer_to_columns(scores.T, again, others, 100)
-    np.testing.assert_array_equal(others, names)
 
 
 GOOD = np.random.default_rng(5).normal(size=(20, 3))
