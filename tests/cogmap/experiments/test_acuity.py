@@ -36,12 +36,3 @@ def test_every_eye_and_number_of_charts_is_a_case(monkeypatch: pytest.MonkeyPatc
     assert usual["heading_median_deg"] < 10
     assert result.metrics["90_columns_533_charts"]["position_median_m"] == usual["position_median_m"]
     assert result.figures.keys() == {"acuity"}
-
-
-@pytest.mark.full
-def test_the_sharper_the_eye_the_better_the_compass() -> None:
-    cases = experiment("acuity").tables["cases"]
-    eyes = cases[cases["charts"] == 3000].set_index("columns")
-    assert eyes.loc[[90, 360], "heading_median_deg"].max() < 3
-    assert eyes.loc[12, "position_median_m"] > 1.5 * eyes.loc[360, "position_median_m"]
-    assert not cases.set_index(["columns", "charts"]).loc[(360, 375), "trusted"]
