@@ -125,7 +125,7 @@ class Layers(nn.Module):
                 self.gauge.partial_fit(self.place, odours, headings)
             else:
                 corrected = headings + self.gauge(self.place, odours).offset
-                self.place.afferents.partial_fit(excited, self.place.tuning(odours))
+                self.place.afferents.partial_fit(excited, self.place.instruct(excited, odours))
                 self.heading.afferents.partial_fit(excited, self.heading.tuning(corrected))
 
     def complain(self) -> str:
@@ -169,6 +169,8 @@ class Layers(nn.Module):
                 self._orient()
             elif entered == "afferents":
                 self.gauge.settle()
+                edges = Atlas.of(self.charts.centres).edges
+                self.place.disambiguate(self.recall.intercepts, self.recall.phases, edges)
 
     def _orient(self) -> None:
         atlas = Atlas.of(self.charts.centres)

@@ -19,7 +19,7 @@ from cogmap.cells.decoding import (
 )
 from cogmap.cells.fields import place_coverage, place_fields
 from cogmap.cells.heading import heading_statistics
-from cogmap.cells.maps import rate_maps
+from cogmap.cells.maps import RateMaps, rate_maps
 from cogmap.cells.place import place_statistics
 
 
@@ -75,8 +75,10 @@ def score(
     dict[str, float]
         `position_median_m`, `position_p95_m`, `heading_median_deg`, `heading_p95_deg`, `heading_resultant`,
         `place_cells_passing`, `place_coverage`, `heading_cells_passing`; cells as fractions of all columns,
-        the silent ones included. Where there is a metric map also `metric_map_r2`, the share of the variance
-        of (x, y) that it explains after one similarity, and `metric_map_median_m`, how far it is off.
+        the silent ones included. Without a compass, when every phase is NaN, no heading cell passes and the
+        errors of heading are left out. Where there is a metric map also `metric_map_r2`, the share of the
+        variance of (x, y) that it explains after one similarity, and `metric_map_median_m`, how far it is
+        off.
 
     Raises
     ------
@@ -93,25 +95,39 @@ def score(
     visited = edges.visited(walked)
 
     away = position_errors(activity_train.odour, poses_train[:, :2], activity.odour, positions)
-    frame = fit_heading_frame(activity_train.phase, poses_train[:, 2])
-    turn = heading_errors(activity.phase, headings, frame)
-    turn_deg = np.rad2deg(np.abs(turn))
-
     place_maps = rate_maps(activity.place, positions, edges=edges, visited=visited)
-    heading_maps = rate_maps(activity.heading, positions, edges=edges, visited=visited)
     place = place_statistics(activity.place, positions, headings, maps=place_maps)
     passing = place["passing"].to_numpy()
-    heading = heading_statistics(activity.heading, positions, headings, maps=heading_maps)
     return {
         "position_median_m": float(np.median(away)),
         "position_p95_m": float(np.percentile(away, 95)),
+        "place_cells_passing": float(passing.mean()),
+        "place_coverage": place_coverage(place_fields(place_maps), passing, edges.visited(room)),
+        **_score_heading(activity, poses, (activity_train, poses_train), place_maps),
+        **_score_metric_map(activity.position, positions, (activity_train.position, poses_train[:, :2])),
+    }
+
+
+def _score_heading(
+    activity: Perceived,
+    poses: Float[np.ndarray, "views 3"],
+    train: tuple[Perceived, Float[np.ndarray, "train 3"]],
+    place_maps: RateMaps,
+) -> dict[str, float]:
+    """Errors and cells; without a compass no cell passes, and there is no heading to be wrong."""
+    if np.isnan(activity.phase).all():
+        return {"heading_cells_passing": 0.0}
+    positions, headings = poses[:, :2], poses[:, 2]
+    frame = fit_heading_frame(train[0].phase, train[1][:, 2])
+    turn = heading_errors(activity.phase, headings, frame)
+    turn_deg = np.rad2deg(np.abs(turn))
+    maps = rate_maps(activity.heading, positions, edges=place_maps.edges, visited=place_maps.visited)
+    cells = heading_statistics(activity.heading, positions, headings, maps=maps)
+    return {
         "heading_median_deg": float(np.median(turn_deg)),
         "heading_p95_deg": float(np.percentile(turn_deg, 95)),
         "heading_resultant": float(abs(np.mean(np.exp(1j * turn)))),
-        "place_cells_passing": float(passing.mean()),
-        "place_coverage": place_coverage(place_fields(place_maps), passing, edges.visited(room)),
-        "heading_cells_passing": float(heading["passing"].mean()),
-        **_score_metric_map(activity.position, positions, (activity_train.position, poses_train[:, :2])),
+        "heading_cells_passing": float(cells["passing"].mean()),
     }
 
 

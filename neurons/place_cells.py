@@ -3,10 +3,12 @@
 from collections.abc import Iterator
 
 import torch
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from neurons.afferents import Afferents
+from neurons.ambiguity import branches
+from neurons.recall import Excited
 
 PEAK = 20.0
 """Rate of a cell at the middle of its field, Hz."""
@@ -14,6 +16,8 @@ WINNERS = 6
 """Units that learn from one smell; it sets how much neighbouring fields overlap."""
 FLATNESS = 0.05
 """Smallest width of a tuning in any direction, as a fraction of its mean variance."""
+FINEST = 1e-9
+"""Least mean variance of a tuning: a unit that has learnt a single smell has none of its own."""
 FAINTEST = -50.0
 """Least exponent of a tuning, 4e-21 Hz: exp is twenty times slower where floats become subnormal."""
 BLOCK = 256
@@ -28,6 +32,9 @@ class PlaceCells(nn.Module):
 
         r_i(o) = 20 Hz · exp(−½ (o − c_i)ᵀ Σ_i⁻¹ (o − c_i)).
 
+    With few odours a smell can mean several places. `disambiguate` makes a unit keep to one of them in
+    sight, by the charts that it listens to; in the dark it remains ambiguous.
+
     Parameters
     ----------
     cells, charts, odorants
@@ -38,6 +45,7 @@ class PlaceCells(nn.Module):
     covariances: Tensor
     mass: Tensor
     placed: Tensor
+    branches: Tensor
 
     def __init__(self, cells: int, charts: int, odorants: int) -> None:
         super().__init__()
@@ -45,6 +53,7 @@ class PlaceCells(nn.Module):
         self.register_buffer("covariances", torch.eye(odorants).repeat(cells, 1, 1))
         self.register_buffer("mass", torch.zeros(cells))
         self.register_buffer("placed", torch.zeros((), dtype=torch.int64))
+        self.register_buffer("branches", torch.ones(charts, cells, dtype=torch.bool))
         self.afferents = Afferents(charts, cells)
 
     def compete(self, log_odours: Float[Tensor, "views odorants"], *, memory: float) -> None:
@@ -72,6 +81,22 @@ class PlaceCells(nn.Module):
         shift = torch.zeros_like(self.centres).index_add_(0, flat, deviation.flatten(0, 1))
         self.centres += rate[:, None] * shift
 
+    def disambiguate(
+        self,
+        smells: Float[Tensor, "charts odorants"],
+        phases: Float[Tensor, "charts"],
+        edges: Int[Tensor, "edges 2"],
+    ) -> None:
+        """Let each unit keep to one place, given the charts' log odours, headings (rad) and overlaps."""
+        self.branches = branches(self.tuning(smells), phases, edges)
+
+    def instruct(
+        self, excited: Excited, log_odours: Float[Tensor, "views odorants"]
+    ) -> Float[Tensor, "views cells"]:
+        """Rates in Hz that a smell demands as far as the excited charts are those of the unit's place."""
+        here = torch.einsum("nw,nwc->nc", excited.weight, self.branches[excited.chart].float())
+        return here * self.tuning(log_odours)
+
     def tuning(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
         """Rates in Hz that smell alone demands."""
         rates = log_odours.new_empty(len(log_odours), len(self.centres))
@@ -93,7 +118,7 @@ class PlaceCells(nn.Module):
         It is −½ P · (o oᵀ) + (P c) · o − ½ cᵀ P c, one matrix product on (o oᵀ, o).
         """
         odorants = self.centres.shape[1]
-        mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1)
+        mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1).clamp(min=FINEST)
         floor = FLATNESS * mean[:, None, None] * torch.eye(odorants)
         # In double precision, as the three terms are large and cancel.
         precision = torch.linalg.inv((self.covariances + floor).double())

@@ -11,8 +11,13 @@ from typing import Any, NamedTuple
 from arena import Arena
 from cogmap.errors import CogmapError
 from cogmap.experiments.brownian import brownian
+from cogmap.experiments.cue_rotation import cue_rotation
 from cogmap.experiments.cyclic import cyclic
+from cogmap.experiments.darkness import darkness
+from cogmap.experiments.directionality import directionality
 from cogmap.experiments.distinguishability import distinguishability
+from cogmap.experiments.fusion import fusion
+from cogmap.experiments.goals import goals
 from cogmap.experiments.localisation import localisation
 from cogmap.experiments.outputs import result_folder
 from cogmap.experiments.result import Result
@@ -20,6 +25,8 @@ from cogmap.experiments.roadmap import roadmap
 from cogmap.experiments.rotation import rotation
 from cogmap.experiments.setting import Setting
 from cogmap.experiments.similarity import similarity
+from cogmap.experiments.sources import sources
+from cogmap.experiments.walks import walks
 from cogmap.inputs import checked_count
 
 FEWEST = 200
@@ -46,6 +53,13 @@ EXPERIMENTS = {
     "localisation": Experiment(localisation, "furnished", 17_000),
     "roadmap": Experiment(roadmap, "obstacles", 17_000),
     "distinguishability": Experiment(distinguishability, "white_rectangle", 17_000, elsewhere=False),
+    "fusion": Experiment(fusion, "furnished", 17_000, takes=("nose", "motion", "camera", "map")),
+    "walks": Experiment(walks, "furnished", 17_000, takes=("nose", "camera", "map")),
+    "sources": Experiment(sources, "furnished", 17_000, takes=("motion", "camera", "map")),
+    "darkness": Experiment(darkness, "furnished", 17_000, takes=("nose", "motion", "camera", "map")),
+    "cue_rotation": Experiment(cue_rotation, "open_field", 17_000, takes=("nose", "motion", "camera", "map")),
+    "goals": Experiment(goals, "furnished", 17_000, takes=("camera",)),
+    "directionality": Experiment(directionality, "furnished", 17_000, takes=("nose", "camera", "map")),
 }
 
 

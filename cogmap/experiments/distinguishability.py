@@ -69,7 +69,7 @@ def _look(setting: Setting, room: Arena) -> _Seen:
     here = replace(setting, room=room)
     walk = here.explore(Brownian(), strips)
     fresh = here.explore(Brownian(), strips, views=min(QUERIES, setting.views), fresh=True)
-    known, asked = _codes(np.asarray(walk.views), np.asarray(fresh.views), setting.seed)
+    known, asked = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), setting.seed)
     nearest = poses_of(walk)[nearest_points(known, 1, queries=asked).indices[:, 0]]
     poses = poses_of(fresh)
     opposite = _opposite(room, poses)
@@ -98,10 +98,10 @@ def _apart(ours: Float[np.ndarray, "views 3"], theirs: Float[np.ndarray, "views 
     return np.array([motion_distances(a[None], b[None])[0, 0] for a, b in zip(ours, theirs, strict=True)])
 
 
-def _codes(
+def retina_codes(
     known: np.ndarray, asked: np.ndarray, seed: int
 ) -> tuple[Float[np.ndarray, "views components"], Float[np.ndarray, "queries components"]]:
-    """Principal components of what the retina makes of strips."""
+    """Give the principal components, of the known views, of what the retina makes of strips."""
     retina = Retina(*known.shape[1:3])
     with one_thread():
         sensed = [

@@ -1,9 +1,12 @@
 """The figures, from results only: arrays in, a matplotlib Figure out."""
 
 from cogmap.plots.barcodes import plot_barcodes
+from cogmap.plots.cell_types import plot_cell_types
 from cogmap.plots.compass import plot_compass
 from cogmap.plots.confusion import plot_confusion
 from cogmap.plots.embedding import plot_embedding
+from cogmap.plots.examples import Tuning, plot_examples
+from cogmap.plots.goals import plot_goals
 from cogmap.plots.heading_cells import plot_tuning_curves
 from cogmap.plots.likeness import plot_likeness
 from cogmap.plots.localisation import plot_localisation
@@ -15,15 +18,20 @@ from cogmap.plots.quasi_metric import plot_quasi_metric
 from cogmap.plots.room import plot_room
 from cogmap.plots.routes import plot_routes
 from cogmap.plots.sheet import plot_sheet
+from cogmap.plots.sources import plot_sources
 from cogmap.plots.translation import plot_translation
 from cogmap.plots.views import plot_views
 from cogmap.plots.walk import plot_walk
 
 __all__ = [
+    "Tuning",
     "plot_barcodes",
+    "plot_cell_types",
     "plot_compass",
     "plot_confusion",
     "plot_embedding",
+    "plot_examples",
+    "plot_goals",
     "plot_likeness",
     "plot_localisation",
     "plot_metric_map",
@@ -34,6 +42,7 @@ __all__ = [
     "plot_room",
     "plot_routes",
     "plot_sheet",
+    "plot_sources",
     "plot_translation",
     "plot_tuning_curves",
     "plot_views",

@@ -177,4 +177,14 @@ def test_bad_input_is_refused(train: tuple[Ideal, np.ndarray], poses: np.ndarray
     with pytest.raises(CogmapError, match="poses is not finite"):
         score(activity, poses * np.nan, train=train)
     with pytest.raises(CogmapError, match="phase is not finite"):
-        score(replace(activity, phase=activity.phase * np.float32(np.nan)), poses, train=train)
+        score(replace(activity, phase=np.where(poses[:, 0] < 0, np.nan, activity.phase)), poses, train=train)
+
+
+def test_without_a_compass_what_applies_is_left(train: tuple[Ideal, np.ndarray], poses: np.ndarray) -> None:
+    activity = ideal(poses)
+    blind = replace(
+        activity, phase=np.full(len(poses), np.nan), heading=activity.heading * np.float32(np.nan)
+    )
+    seeing = score(activity, poses, train=train)
+    applies = {key: value for key, value in seeing.items() if not key.startswith("heading")}
+    assert score(blind, poses, train=train) == {**applies, "heading_cells_passing": 0.0}

@@ -1,0 +1,140 @@
+"""The walls of a square room turn by 90° and the smells stay: what the cells follow."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+
+from arena import Arena, Brownian, Camera
+from cogmap.cells import RateMaps, bin_edges, mean_vectors, rate_maps, tuning_curves
+from cogmap.errors import CogmapError
+from cogmap.experiments.populations import grow_map, map_correlations, perceive
+from cogmap.experiments.result import Result
+from cogmap.experiments.setting import FRESH, Setting, poses_of
+from cogmap.plots import Tuning, plot_examples
+
+PLATFORM, ROOM = 1.5, 2.5
+"""Half the side of the platform and of the room, m."""
+CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+SOURCES = ((-1.2, -1.0), (1.2, 0.6), (0.9, -1.2))
+"""m; no turn of the room brings them to the same places."""
+
+
+def cue_rotation(setting: Setting) -> Result:
+    """Learn a square room, then turn its walls by a quarter and walk again, in the light and in the dark.
+
+    The walls are of the materials of the first four of the room that is given. A place cell follows the walls
+    when its map correlates better with the learnt one turned by a quarter than with the learnt one itself. In
+    the light cells fire by sight, in the dark place cells by smell and heading cells not at all;
+    `heading_shift_deg` is the median change of the preferred direction, counter-clockwise.
+    """
+    camera = Camera.panoramic()
+    rooms = {turns: square_room(setting.room, turns) for turns in (0, 1)}
+    walk, before, after = (
+        replace(setting, room=rooms[turns], seed=setting.seed + late).explore(
+            Brownian(), camera, views=min(setting.views, most), fresh=late > 0
+        )
+        for turns, late, most in ((0, 0, setting.views), (0, 1, FRESH), (1, 2, FRESH))
+    )
+    cmap = grow_map(setting, walk)
+    lit = perceive(cmap, before.views), perceive(cmap, after.views)
+    dark = cmap.perceive(odours=before.odours), cmap.perceive(odours=after.odours)
+    place = {
+        name: [_maps(seen.place, poses_of(one)) for seen, one in zip(pair, (before, after), strict=True)]
+        for name, pair in (("light", lit), ("dark", dark))
+    }
+    table = pd.DataFrame(
+        {
+            f"{name}_{cue}": map_correlations(turned(maps[0], turns), maps[1])
+            for name, maps in place.items()
+            for cue, turns in (("walls", 1), ("smells", 0))
+        }
+    )
+    curves = [
+        tuning_curves(np.nan_to_num(seen.heading), poses_of(one)[:, 2])
+        for seen, one in zip(lit, (before, after), strict=True)
+    ]
+    shift = np.rad2deg(np.angle(mean_vectors(curves[1]) * mean_vectors(curves[0]).conj()))
+    figures = {
+        "heading_shift_deg": float(np.median(shift)),
+        "heading_follows_walls": float((abs(shift - 90) < 45).mean()),
+    }
+    return Result(
+        metrics={
+            **{
+                f"place_follows_walls_{name}": float(
+                    (table[f"{name}_walls"] > table[f"{name}_smells"]).mean()
+                )
+                for name in place
+            },
+            **{f"correlation_{name}": float(found) for name, found in table.median().items()},
+            **({} if np.isnan(shift).any() else figures),
+            "trusted": cmap.trusted_,
+        },
+        tables={"place_cells": table, "heading_cells": pd.DataFrame({"shift_deg": shift})},
+        figures={
+            "examples": plot_examples(
+                {
+                    "in the light, before": Tuning(
+                        place["light"][0], _curves(lit[0].place, poses_of(before))
+                    ),
+                    "in the light, walls turned": Tuning(
+                        place["light"][1], _curves(lit[1].place, poses_of(after))
+                    ),
+                    "in the dark, walls turned": Tuning(
+                        place["dark"][1], _curves(dark[1].place, poses_of(after))
+                    ),
+                    "heading cells, before": Tuning(
+                        _maps(np.nan_to_num(lit[0].heading), poses_of(before)), curves[0]
+                    ),
+                    "heading cells, walls turned": Tuning(
+                        _maps(np.nan_to_num(lit[1].heading), poses_of(after)), curves[1]
+                    ),
+                }
+            )
+        },
+    )
+
+
+def square_room(room: Arena, turns: int) -> Arena:
+    """Build a square room with the first four wall materials of a room, turned by so many quarters.
+
+    Raises
+    ------
+    CogmapError
+        For a room with fewer walls.
+    """
+    materials = [wall.material for wall in room.walls[:4]]
+    if len(materials) < 4:
+        raise CogmapError(f"room {room.name!r} has {len(materials)} walls; a square room takes four")
+    corners = [(ROOM * x, ROOM * y) for x, y in CORNERS]
+    walls = [
+        {"start": corners[side], "end": corners[(side + 1) % 4], "material": materials[(side - turns) % 4]}
+        for side in range(4)
+    ]
+    return Arena.create(
+        name=f"square_{90 * turns}",
+        platform=[[(PLATFORM * x, PLATFORM * y) for x, y in CORNERS]],
+        walls=walls,
+        sources=[{"position": place} for place in SOURCES],
+    )
+
+
+def turned(maps: RateMaps, turns: int) -> RateMaps:
+    """Turn square maps by so many quarters counter-clockwise."""
+    # Row 0 is the lowest y, so that numpy's quarter turns go the other way.
+    return RateMaps(np.rot90(maps.rates, -turns, axes=(1, 2)), np.rot90(maps.occupancy, -turns), maps.edges)
+
+
+def _maps(rates: Float[np.ndarray, "views cells"], poses: Float[np.ndarray, "views 3"]) -> RateMaps:
+    edges = bin_edges(PLATFORM * np.array(CORNERS, dtype=float))
+    return rate_maps(rates, poses[:, :2], edges=edges)
+
+
+def _curves(
+    rates: Float[np.ndarray, "views cells"], poses: Float[np.ndarray, "views 3"]
+) -> Float[np.ndarray, "cells bins"]:
+    return tuning_curves(rates, poses[:, 2])

@@ -1,0 +1,85 @@
+"""One smell at two places: a unit keeps to one of them, where its charts hang together."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+from jaxtyping import Bool, Complex, Float, Int
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components, dijkstra
+from torch import Tensor
+
+ACTIVE = 0.2
+"""A chart where a unit fires at least at this part of its peak is one of its active charts."""
+RIVAL = 0.25
+"""A group of active charts that evokes at least this part of what the strongest group does may be a place."""
+LIGHT = 0.03
+"""A group that evokes less than this part of what the strongest does is noise."""
+TURNED = 0.5
+"""A group of which the mean heading vector is longer is a part of a place, where all headings are."""
+
+
+def branches(
+    rates: Float[Tensor, "charts cells"], phases: Float[Tensor, "charts"], edges: Int[Tensor, "edges 2"]
+) -> Bool[Tensor, "charts cells"]:
+    """Say which charts a unit listens to: all, or those nearest to one place when its smell means several.
+
+    The active charts of a unit fall into groups that hang together over the atlas. A group that does not go
+    all around the compass is a part of a place, and joins the nearest group; one that then weighs little is
+    none. With one place the unit is left alone. With several it keeps the one where the units before it fire
+    least, unambiguous units being first, so that all places stay covered; every chart goes with the place it
+    is fewest steps from.
+
+    Parameters
+    ----------
+    rates
+        Of each unit at the smell of each chart.
+    phases
+        Headings of the charts, rad; NaN without a compass, when every group that weighs enough is a place:
+        as on a path where nobody turns, and the two directions are two places.
+    edges
+        Overlapping charts.
+    """
+    evoked = rates.double().numpy()
+    count, cells = evoked.shape
+    k, j = edges.numpy().T
+    graph = csr_array((np.ones(2 * len(k)), (np.r_[k, j], np.r_[j, k])), shape=(count, count))
+    heading = np.exp(1j * phases.double().numpy())
+    groups = [_places(evoked[:, cell], heading, graph) for cell in range(cells)]
+    kept = np.ones((count, cells), dtype=bool)
+    covered = np.zeros(count)
+    for cell in sorted(range(cells), key=lambda cell: len(groups[cell]) > 1):
+        if len(groups[cell]) > 1:
+            rate = evoked[:, cell]
+            crowd = [float(rate[group] @ covered[group] / rate[group].sum()) for group in groups[cell]]
+            steps = np.stack(
+                [dijkstra(graph, unweighted=True, indices=group, min_only=True) for group in groups[cell]]
+            )
+            kept[:, cell] = steps.argmin(axis=0) == int(np.argmin(crowd))
+        covered += evoked[:, cell] * kept[:, cell]
+    return torch.from_numpy(kept)
+
+
+def _places(
+    rate: Float[np.ndarray, "charts"],
+    heading: Complex[np.ndarray, "charts"],
+    graph: csr_array,
+) -> list[Int[np.ndarray, "_"]]:
+    """Find the groups of active charts that hang together, parts of a place joined with the nearest group."""
+    active = np.flatnonzero((rate >= ACTIVE * rate.max()) & (rate > 0))
+    found, label = connected_components(graph[active][:, active], directed=False)
+    weight = np.bincount(label, rate[active], minlength=found)
+    groups = [active[label == group] for group in np.flatnonzero(weight >= LIGHT * weight.max(initial=0.0))]
+    while len(groups) > 1:
+        turned = [abs(rate[group] @ heading[group]) / rate[group].sum() for group in groups]
+        if np.isnan(turned).any():
+            break
+        part = int(np.argmax(turned))
+        if turned[part] < TURNED:
+            break
+        steps = dijkstra(graph, unweighted=True, indices=groups[part], min_only=True)
+        lost = groups.pop(part)
+        nearest = int(np.argmin([steps[group].min() for group in groups]))
+        groups[nearest] = np.concatenate([groups[nearest], lost])
+    heaviest = max((rate[group].sum() for group in groups), default=0.0)
+    return [group for group in groups if rate[group].sum() >= RIVAL * heaviest]
