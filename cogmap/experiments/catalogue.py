@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from arena import Arena
 from cogmap.errors import CogmapError
+from cogmap.experiments.acuity import acuity
 from cogmap.experiments.brownian import brownian
 from cogmap.experiments.cue_rotation import cue_rotation
 from cogmap.experiments.cyclic import cyclic
@@ -56,6 +57,7 @@ EXPERIMENTS = {
     "fusion": Experiment(fusion, "furnished", 17_000, takes=("nose", "motion", "camera", "map")),
     "walks": Experiment(walks, "furnished", 17_000, takes=("nose", "camera", "map")),
     "sources": Experiment(sources, "furnished", 17_000, takes=("motion", "camera", "map")),
+    "acuity": Experiment(acuity, "furnished", 17_000, takes=("nose", "motion", "map")),
     "darkness": Experiment(darkness, "furnished", 17_000, takes=("nose", "motion", "camera", "map")),
     "cue_rotation": Experiment(cue_rotation, "open_field", 17_000, takes=("nose", "motion", "camera", "map")),
     "goals": Experiment(goals, "furnished", 17_000, takes=("camera",)),

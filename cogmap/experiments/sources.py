@@ -12,13 +12,14 @@ from arena import Arena, Brownian, Camera, Nose, Recording
 from cogmap.experiments.populations import Ground, grow_map, perceive
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import FRESH, FRESH_SEED, Setting, poses_of
-from cogmap.plots import plot_sources
+from cogmap.plots import plot_cases
 from cogmap.scoring import score
 
 PLACES = ((-1.5, -1.0), (1.6, 0.9), (1.2, -1.1), (-1.3, 1.0))
 """Of the sources in m, added one by one; the first three are those of every room."""
 NOISE = (0.0, 0.1, 0.2, 0.3)
 USUAL_SOURCES, USUAL_NOISE = 3, 0.1
+LABELS = {"sources": "odour sources", "noise": "noise of the nose"}
 
 
 def sources(setting: Setting) -> Result:
@@ -45,7 +46,7 @@ def sources(setting: Setting) -> Result:
             for count, noise in cases
         ]
     )
-    return Result(metrics=metrics, tables={"cases": table}, figures={"sources": plot_sources(table)})
+    return Result(metrics=metrics, tables={"cases": table}, figures={"sources": plot_cases(table, LABELS)})
 
 
 def smell(room: Arena, walk: Recording, *, count: int, noise: float, seed: int) -> np.ndarray:

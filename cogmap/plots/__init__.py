@@ -1,6 +1,7 @@
 """The figures, from results only: arrays in, a matplotlib Figure out."""
 
 from cogmap.plots.barcodes import plot_barcodes
+from cogmap.plots.cases import plot_cases
 from cogmap.plots.cell_types import plot_cell_types
 from cogmap.plots.compass import plot_compass
 from cogmap.plots.confusion import plot_confusion
@@ -18,7 +19,6 @@ from cogmap.plots.quasi_metric import plot_quasi_metric
 from cogmap.plots.room import plot_room
 from cogmap.plots.routes import plot_routes
 from cogmap.plots.sheet import plot_sheet
-from cogmap.plots.sources import plot_sources
 from cogmap.plots.translation import plot_translation
 from cogmap.plots.views import plot_views
 from cogmap.plots.walk import plot_walk
@@ -26,6 +26,7 @@ from cogmap.plots.walk import plot_walk
 __all__ = [
     "Tuning",
     "plot_barcodes",
+    "plot_cases",
     "plot_cell_types",
     "plot_compass",
     "plot_confusion",
@@ -42,7 +43,6 @@ __all__ = [
     "plot_room",
     "plot_routes",
     "plot_sheet",
-    "plot_sources",
     "plot_translation",
     "plot_tuning_curves",
     "plot_views",

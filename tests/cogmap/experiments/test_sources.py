@@ -1,8 +1,6 @@
 import numpy as np
-import pytest
 
 from arena import Arena, Brownian, Camera, explore
-from cogmap.experiments.catalogue import experiment
 from cogmap.experiments.sources import PLACES, smell
 
 
@@ -15,16 +13,3 @@ def test_noiseless_smells_are_the_concentrations_of_the_sources_asked_for() -> N
     np.testing.assert_allclose(smell(room, walk, count=2, noise=0.0, seed=0), smelt[:, :2])
     noisy = np.log(smell(room, walk, count=4, noise=0.3, seed=0)[:, :3] / smelt)
     np.testing.assert_allclose(noisy.std(), 0.3, rtol=0.2)
-
-
-@pytest.mark.full
-def test_cells_keep_to_one_place_where_two_smells_do_not() -> None:
-    metrics = experiment("sources").metrics
-    two = metrics["2_sources_0.1_noise"]
-    assert two["single_field"] > 0.85
-    assert two["place_position_median_m"] < 0.13
-    assert two["place_position_p95_m"] < 0.4 < two["position_p95_m"]
-    for noise in (0, 0.1, 0.2, 0.3):
-        usual = metrics[f"3_sources_{noise:g}_noise"]
-        assert usual["trusted"]
-        assert usual["place_cells_passing"] > 0.9
