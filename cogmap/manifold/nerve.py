@@ -75,7 +75,7 @@ def population_nerve(
     peak = rates.max(axis=0)
     fires = (rates >= active * peak) & (peak > 0)
     complex_ = gudhi.SimplexTree()
-    _grow(complex_, [], np.arange(len(fires)), fires, together, max_dimension + 2)
+    _grow(complex_, [], np.arange(len(fires)), fires, together=together, most=max_dimension + 2)
     if complex_.is_empty():
         raise CogmapError(
             f"no cell is active in {together} views; give more views, or rates that are not all zero"
@@ -94,6 +94,7 @@ def _grow(
     simplex: list[int],
     views: Int[np.ndarray, "shared"],
     fires: Bool[np.ndarray, "views cells"],
+    *,
     together: int,
     most: int,
 ) -> None:
@@ -104,4 +105,4 @@ def _grow(
         larger = [*simplex, int(cell)]
         complex_.insert(larger)
         if len(larger) < most:
-            _grow(complex_, larger, views[fires[views, cell]], fires, together, most)
+            _grow(complex_, larger, views[fires[views, cell]], fires, together=together, most=most)
