@@ -1,5 +1,6 @@
 """The figures, from results only: arrays in, a matplotlib Figure out."""
 
+from cogmap.plots.barcode_grid import plot_barcode_grid
 from cogmap.plots.barcodes import plot_barcodes
 from cogmap.plots.cell_types import plot_cell_types
 from cogmap.plots.compass import plot_compass
@@ -25,6 +26,7 @@ from cogmap.plots.walk import plot_walk
 
 __all__ = [
     "Tuning",
+    "plot_barcode_grid",
     "plot_barcodes",
     "plot_cell_types",
     "plot_compass",
