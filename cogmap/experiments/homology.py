@@ -37,6 +37,8 @@ class Case(NamedTuple):
     """None for headings without a compass."""
     nerve: Nerve | None
     """Of a population."""
+    reason: str = ""
+    """Why the map is not to be trusted."""
 
     @property
     def right(self) -> bool:
@@ -119,7 +121,7 @@ def _visit(setting: Setting) -> list[Case]:
     nerves = {name: population_nerve(getattr(activity, name)) for name in POPULATIONS if name in found}
     expected = expected_numbers(setting.room, poses_of(walk)[0, :2])
     return [
-        Case(setting.room.name, name, numbers, found.get(name), nerves.get(name))
+        Case(setting.room.name, name, numbers, found.get(name), nerves.get(name), cmap.reason_)
         for name, numbers in expected.items()
     ]
 
@@ -140,6 +142,7 @@ def _figures(case: Case) -> dict[str, Any]:
         **({} if found is None else {"betti": list(found.numbers), "votes": list(found.votes)}),
         "margin": case.margin,
         **({} if case.nerve is None else {"nerve": list(case.nerve.numbers)}),
+        **({"reason": case.reason} if case.reason else {}),
     }
 
 

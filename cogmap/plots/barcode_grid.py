@@ -55,7 +55,8 @@ def plot_barcode_grid(
         limit = _limit([results[room][name] for room in results])
         for axes, room in zip(column, results, strict=True):
             title = _draw(axes, results[room][name], expected[room][name], limit)
-            axes.set_title(f"{name.replace('_', ' ')}\n{title}" if axes is column[0] else title)
+            title = f"{name.replace('_', ' ')}\n{title}" if axes is column[0] else title
+            axes.set_title(title, fontsize=SMALL)
         column[-1].set_xlabel("π = death / birth, no unit", fontsize=SMALL, color=INK)
     for axes, room in zip(panels[:, 0], results, strict=True):
         axes.set_ylabel(room.replace("_", " "), fontsize=SMALL, color=INK)
