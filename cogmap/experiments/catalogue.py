@@ -20,6 +20,7 @@ from cogmap.experiments.fusion import fusion
 from cogmap.experiments.goals import goals
 from cogmap.experiments.homology import homology
 from cogmap.experiments.localisation import localisation
+from cogmap.experiments.neurons import neurons
 from cogmap.experiments.outputs import result_folder
 from cogmap.experiments.result import Result
 from cogmap.experiments.roadmap import roadmap
@@ -63,6 +64,7 @@ EXPERIMENTS = {
     "cue_rotation": Experiment(cue_rotation, "open_field", 17_000, takes=("nose", "motion", "camera", "map")),
     "goals": Experiment(goals, "furnished", 17_000, takes=("camera",)),
     "directionality": Experiment(directionality, "furnished", 17_000, takes=("nose", "camera", "map")),
+    "neurons": Experiment(neurons, "furnished", 17_000, takes=("nose", "camera", "map")),
     "homology": Experiment(
         homology,
         "open_field",

@@ -12,8 +12,8 @@ import shapely
 from jaxtyping import Float
 
 from arena import Arena, Body, Brownian, Camera
-from cogmap.cognitive_map import CognitiveMap
 from cogmap.experiments.homologies import homologies
+from cogmap.experiments.populations import grow_map, perceive
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import Setting, poses_of
 from cogmap.manifold import Betti, Nerve, population_nerve
@@ -113,10 +113,8 @@ def expected_numbers(room: Arena, start: Float[np.ndarray, "2"]) -> dict[str, Nu
 def _visit(setting: Setting) -> list[Case]:
     """Learn a map of one room and look at all that it knows."""
     walk = setting.explore(Brownian(), Camera.panoramic())
-    charts = min(3000, len(walk) // 3)
-    cmap = CognitiveMap(**{"charts": charts, "seed": setting.seed, **setting.map})
-    cmap.fit(walk.views, walk.odours)
-    activity = cmap.perceive(walk.views)
+    cmap = grow_map(setting, walk)
+    activity = perceive(cmap, walk.views)
     found = homologies(cmap.encode(walk.views), activity, seed=setting.seed)
     nerves = {name: population_nerve(getattr(activity, name)) for name in POPULATIONS if name in found}
     expected = expected_numbers(setting.room, poses_of(walk)[0, :2])

@@ -87,7 +87,6 @@ def test_the_margin_is_that_of_the_closest_call_asked_for() -> None:
     assert Case("pillar", "fused", (1, 1), None, None).margin is None
 
 
-@pytest.mark.filterwarnings("ignore:this map is not to be trusted")
 def test_it_writes_right_and_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Homology is replaced, as the small walk leaves gaps; heading is as without a compass."""
     numbers = {"view_manifold": (1, 2, 1), "fused": (1, 1, 0), "place": (1, 1, 0)}
