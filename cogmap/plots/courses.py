@@ -14,8 +14,8 @@ PANELS = {
         "heading_cells_passing": ("heading cells", BAD, "-"),
         "place_coverage": ("area in a place field", SOFT, "--"),
     },
-    "median error of position (m)": {"position_median_m": ("place cells, linear read-out", GOOD, "-")},
-    "median error of heading (°)": {"heading_median_deg": ("heading cells, linear read-out", BAD, "-")},
+    "median error of position (m)": {"position_median_m": ("read from place cells", GOOD, "-")},
+    "median error of heading (°)": {"heading_median_deg": ("read from heading cells", BAD, "-")},
 }
 
 

@@ -43,7 +43,7 @@ def test_few_or_silent_cells_are_drawn_too() -> None:
 
 
 def test_what_does_not_fit_is_refused() -> None:
-    with pytest.raises(CogmapError, match=r"place has shape \(39, 20\)"):
-        plot_afferents(PLACE[1:], HEADING, PREFERRED)
+    with pytest.raises(CogmapError, match=r"preferred has shape \(0, 3\)"):
+        plot_afferents(PLACE[:0], HEADING[:0], PREFERRED[:0])
     with pytest.raises(CogmapError, match="heading is not finite"):
         plot_afferents(PLACE, HEADING * np.nan, PREFERRED)
