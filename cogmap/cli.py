@@ -118,8 +118,8 @@ def _experiment(
     """Run an experiment of the paper: a table of metrics, figures, and the data behind them.
 
     On the manifold of views: rotation, cyclic, brownian, similarity, localisation, roadmap and
-    distinguishability. On the cells: fusion, walks, sources, acuity, darkness, cue_rotation,
-    goals and directionality.
+    distinguishability. On the cells: fusion, walks, sources, acuity, darkness, cue_rotation, goals,
+    directionality and neurons. On the holes of all that a map knows: homology.
 
     Examples: `cogmap experiment rotation`; `cogmap experiment brownian --views 4000 --seed 1 --out walk`;
     `cogmap experiment fusion --arena pillar`; `cogmap experiment localisation --arena obstacles --json`.

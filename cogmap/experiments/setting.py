@@ -42,6 +42,8 @@ class Setting:
     """To look through; the experiment's own when None."""
     map: Mapping[str, Any] = field(default_factory=dict)
     """Parameters of `CognitiveMap` that differ from the experiment's own."""
+    further: tuple[Arena, ...] = ()
+    """Rooms to visit after the first, by an experiment of several."""
 
     def explore(
         self,
