@@ -19,8 +19,8 @@ VIEWS = 200_000
 WALKED = 17_000
 PIECE = 1000
 """Views of a walk that are handed over at once."""
-EPOCH = 10_000
-"""So that all stages are passed and the last one lasts for 60,000 views."""
+EPOCHS = 20
+"""Of the stream: all stages are passed, and the last one lasts for six of them."""
 
 
 def streaming(views: int = VIEWS) -> Figures:
@@ -42,7 +42,7 @@ def learn(path: Path, views: int) -> Figures:
     walk = Recording.open(path)
     starts = np.arange(0, len(walk) - PIECE + 1, PIECE)
     rng = np.random.default_rng(0)
-    cmap = CognitiveMap(epoch=max(1, views * EPOCH // VIEWS))
+    cmap = CognitiveMap(epoch=views // EPOCHS)
     before, peaks, spent = peak(), [], []
     for _ in range(views // PIECE):
         start = rng.choice(starts)
