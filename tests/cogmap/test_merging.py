@@ -110,6 +110,7 @@ def test_a_fork_has_learnt_nothing_of_its_stage_and_the_rest_as_well(
     assert not differing(layers, begun[stage])
     assert differing(fork, layers) <= {*SUMS[stage], *OWN}
     assert all(not fork.get_buffer(name).any() for name in SUMS[stage])
+    assert fork.gauge.recent.isnan().all()
     assert fork.age == layers.begins(stage)
     assert fork.stage == stage
 
