@@ -71,6 +71,7 @@ def experiment(
     views: int | None = None,
     seed: int = 0,
     progress: bool = False,
+    library: Path | None = None,
     **different: Any,
 ) -> Result:
     """Run an experiment by its name.
@@ -90,6 +91,8 @@ def experiment(
         Of walks, noise and all that is drawn.
     progress
         Whether to show progress on stderr.
+    library
+        Folder, which must exist, in which walks are looked for and left for other runs; None leaves none.
     different
         `nose`, `motion`, `camera`, or parameters of `CognitiveMap` as `map`, where the experiment takes them.
 
@@ -114,7 +117,7 @@ def experiment(
         nullcontext() if out is None else result_folder(out) as folder,
         TemporaryDirectory(prefix="cogmap-") as scratch,
     ):
-        found = chosen.conduct(Setting(room, views, seed, progress, Path(scratch), **different))
+        found = chosen.conduct(Setting(room, views, seed, progress, Path(scratch), library, **different))
         about = {"experiment": name, "arena": room.name, "views": views, "seed": seed}
         result = Result({**about, **found.metrics}, found.tables, found.figures)
         if folder is not None:

@@ -20,6 +20,7 @@ from cogmap.plots.routes import plot_routes
 from cogmap.plots.sheet import plot_sheet
 from cogmap.plots.sources import plot_sources
 from cogmap.plots.translation import plot_translation
+from cogmap.plots.trends import plot_trend
 from cogmap.plots.views import plot_views
 from cogmap.plots.walk import plot_walk
 
@@ -44,6 +45,7 @@ __all__ = [
     "plot_sheet",
     "plot_sources",
     "plot_translation",
+    "plot_trend",
     "plot_tuning_curves",
     "plot_views",
     "plot_walk",
