@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -22,6 +22,8 @@ MOST_LINES = 6
 """A second parameter with at most so many values gives each a line of its own."""
 _MARKERS = "osD^vP"
 _COLUMNS = 3
+_ASIDE = 0.07
+"""Between the dots of two lines at the same category, of the way to the next."""
 _UNITS = {
     "_m": "m",
     "_m2": "m²",
@@ -44,12 +46,12 @@ class _Axis(NamedTuple):
     """Where the values of a parameter lie."""
 
     name: str
-    values: list[float | str]
+    levels: list[Any]
     is_category: bool
     is_log: bool
 
-    def place(self, value: float | str) -> float:
-        return float(self.values.index(value)) if self.is_category else float(value)
+    def place(self, value: Any) -> float:
+        return float(self.levels.index(value)) if self.is_category else float(value)
 
 
 def statistics_of(table: pd.DataFrame, varied: Sequence[str]) -> list[str]:
@@ -58,7 +60,7 @@ def statistics_of(table: pd.DataFrame, varied: Sequence[str]) -> list[str]:
     return [
         str(name)
         for name, column in table.items()
-        if name not in beside and is_numeric_dtype(column.dtype) and column.nunique() > 1
+        if name not in beside and is_numeric_dtype(column.dtype) and len(column.dropna().unique()) > 1
     ]
 
 
@@ -164,8 +166,9 @@ def _second(table: pd.DataFrame, name: str, varied: Sequence[str]) -> str | None
 
 def _draw(axes: Axes, means: pd.DataFrame, axis: _Axis, *, line: str, label: str, mark: int) -> None:
     colour = colormaps["tab10"](mark) if label else GOOD
+    aside = _ASIDE * mark if axis.is_category else 0.0
     axes.errorbar(
-        [axis.place(value) for value in means[axis.name]],
+        [axis.place(value) + aside for value in means[axis.name]],
         means["mean"],
         means["half"].fillna(0.0),
         fmt=_MARKERS[mark % len(_MARKERS)],
@@ -189,10 +192,10 @@ def _scale(axes: Axes, axis: _Axis) -> None:
     if axis.is_log:
         axes.set_xscale("log")
     if axis.is_category:
-        axes.set_xticks(range(len(axis.values)), [_short(value) for value in axis.values], fontsize=TINY)
-        axes.set_xlim(-0.5, len(axis.values) - 0.5)
-    elif len(axis.values) <= MOST_LINES:
-        axes.set_xticks([float(value) for value in axis.values], [_short(value) for value in axis.values])
+        axes.set_xticks(range(len(axis.levels)), [_short(value) for value in axis.levels], fontsize=TINY)
+        axes.set_xlim(-0.5, len(axis.levels) - 0.5)
+    elif len(axis.levels) <= MOST_LINES:
+        axes.set_xticks([float(value) for value in axis.levels], [_short(value) for value in axis.levels])
         axes.xaxis.set_minor_locator(NullLocator())
     elif axis.is_log:
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

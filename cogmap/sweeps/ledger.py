@@ -23,6 +23,9 @@ MARK = "sweep.json"
 """What marks a folder as that of a sweep."""
 FORMAT = "cogmap sweep 1"
 
+KEPT = "all points that are finished are kept, and the same command goes on from there"
+"""What a sweep that ends early says."""
+
 Record = dict[str, Any]
 
 
@@ -63,7 +66,7 @@ class Ledger:
             lock.acquire(timeout=0)
         except Timeout:
             raise CogmapError(
-                f"another command is at the sweep in {self.folder}; wait for its end or choose another folder"
+                f"another command is at the sweep in {self.folder}; wait for its end or choose another"
             ) from None
         with lock:
             self._lay_out(plan, points)
@@ -103,7 +106,7 @@ class Ledger:
 
     @contextmanager
     def replacing(self, path: Path) -> Iterator[Path]:
-        """Give a path to write a file to, which takes the place of `path` once it is whole and on the disk."""
+        """Give a path to write to; the file takes the place of `path` once it is whole and on the disk."""
         fresh = self.work / f"{path.stem}.{os.getpid()}{path.suffix}"
         with writing(self.folder):
             try:
@@ -157,10 +160,7 @@ def writing(folder: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise CogmapError(
-            f"cannot write to {folder}: {error.strerror or error}; all points that are finished are kept, and "
-            "the same command goes on from there"
-        ) from None
+        raise CogmapError(f"cannot write to {folder}: {error.strerror or error}; {KEPT}") from None
 
 
 def is_full_disk(error: BaseException | None) -> bool:

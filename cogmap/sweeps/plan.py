@@ -6,6 +6,7 @@ import itertools
 import json
 import tomllib
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
@@ -43,7 +44,7 @@ class Plan(Part):
     """To learn from at every point; the experiment's own number when None."""
     seeds: Annotated[tuple[Annotated[int, Field(strict=True, ge=0)], ...], Field(min_length=1)] = (0,)
     """Each point is repeated with every one."""
-    fixed: Annotated[dict[str, Any], Field(alias="set")] = {}
+    fixed: Annotated[dict[str, Any], Field(alias="set", default_factory=dict)]
     """Parameters that are the same at every point, as `set` in the file."""
     grid: dict[str, list[Any] | dict[str, Any]] | None = None
     """Values by parameter, of which every combination is a point; as a table, each value has a name."""
@@ -51,7 +52,7 @@ class Plan(Part):
     """The points one by one, each a value by parameter."""
     sample: Sample | None = None
     """Points to be drawn from ranges."""
-    labels: dict[str, str] = {}
+    labels: dict[str, str] = Field(default_factory=dict)
     """What figures call a parameter or a statistic."""
 
     @classmethod
@@ -61,7 +62,7 @@ class Plan(Part):
             plan = cls.model_validate(fields)
         except ValidationError as error:
             raise CogmapError(f"the sweep's {complaint(error)}") from None
-        plan._check()
+        plan.check()
         return plan
 
     @classmethod
@@ -97,7 +98,7 @@ class Plan(Part):
 
     @property
     def logarithmic(self) -> frozenset[str]:
-        """The parameters that vary by ratios: drawn so, or three and more values of a grid with equal ones."""
+        """The parameters drawn on a log scale, and those of a grid with three or more at equal ratios."""
         if self.sample is not None:
             return frozenset(name for name, span in self.sample.ranges.items() if span.log)
         values = {
@@ -116,7 +117,8 @@ class Plan(Part):
             drawn = self.points or []
         return [{name: Choice(_shown(value), value) for name, value in point.items()} for point in drawn]
 
-    def _check(self) -> None:
+    def check(self) -> None:
+        """Raise unless something is varied, in one way, and nothing is said twice."""
         if (self.grid is not None) + (self.points is not None) + (self.sample is not None) != 1:
             raise CogmapError("a sweep varies something in exactly one way; give a grid, points or a sample")
         if not self.varied:
@@ -142,10 +144,8 @@ def _choices(values: list[Any] | dict[str, Any]) -> list[Choice]:
     if isinstance(values, list):
         return [Choice(_shown(value), value) for value in values]
     names: list[Shown] = list(values)
-    try:
+    with suppress(ValueError):
         names = [float(name) if set(str(name)) & set(".eE") else int(name) for name in names]
-    except ValueError:
-        pass
     return [Choice(name, value) for name, value in zip(names, values.values(), strict=True)]
 
 

@@ -142,9 +142,9 @@ def _map(given: Mapping[str, Any]) -> dict[str, int]:
 
 
 def _kind(given: Mapping[str, Any], family: str, kinds: tuple[str, ...]) -> str:
-    kind = given.get(family, kinds[0])
+    kind = str(given.get(family, kinds[0]))
     check_choice(family, kind, kinds)
-    return str(kind)
+    return kind
 
 
 def _fields(given: Mapping[str, Any], family: str, known: Collection[str]) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from cogmap.errors import CogmapError
 from cogmap.experiments.catalogue import EXPERIMENTS, Experiment, experiment
-from cogmap.sweeps.ledger import MARK, Ledger, is_full_disk, writing
+from cogmap.sweeps.ledger import KEPT, MARK, Ledger, is_full_disk, writing
 from cogmap.sweeps.points import Point
 from cogmap.sweeps.table import flat
 
@@ -70,12 +70,9 @@ def _outcome(task: Task) -> dict[str, Any]:
                 **point.different,
             )
         metrics: dict[str, Any] = json.loads(json.dumps(flat(found.metrics)))
-    except Exception as error:
+    except Exception as error:  # noqa: BLE001  whatever a point raises is its outcome
         if is_full_disk(error):
-            raise CogmapError(
-                "there is no space left on a disk; all points that are finished are kept, and the same command "
-                "goes on from there"
-            ) from None
+            raise CogmapError(f"there is no space left on a disk; {KEPT}") from None
         return {"error": " ".join(f"{type(error).__name__}: {error}".split())}
     return {"metrics": metrics}
 
@@ -93,8 +90,7 @@ def on_this_machine(tasks: Sequence[Task], workers: int | None) -> Iterator[None
         yield from pool(delayed(do)(task) for task in tasks)
     except TerminatedWorkerError:
         raise CogmapError(
-            "a process that did a point was killed, perhaps for lack of memory; all points that are finished "
-            "are kept, and the same command goes on from there, with fewer --workers if told"
+            f"a process that did a point was killed, perhaps for lack of memory; {KEPT}"
         ) from None
 
 
@@ -112,18 +108,14 @@ def on_cluster(tasks: Sequence[Task], address: str) -> Iterator[None]:
 
         futures = client.map(do, tasks, pure=False)
         try:
-            for future in as_completed(futures):
+            for future in as_completed(futures, loop=client.loop):
                 if future.cancelled() or future.status == "lost":
-                    raise CogmapError(
-                        f"the Dask scheduler at {address} was lost; all points that are finished are kept, and "
-                        "the same command goes on from there"
-                    )
+                    raise CogmapError(f"the Dask scheduler at {address} was lost; {KEPT}")
                 try:
                     yield future.result()
                 except KilledWorker:
                     raise CogmapError(
-                        "workers that did a point were killed, perhaps for lack of memory; all points that are "
-                        "finished are kept, and the same command goes on from there"
+                        f"workers that did a point were killed, perhaps for lack of memory; {KEPT}"
                     ) from None
         finally:
             client.cancel(futures)
