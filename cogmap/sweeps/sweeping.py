@@ -114,7 +114,7 @@ def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
                 plan.varied,
                 logarithmic=plan.logarithmic,
                 labels=plan.labels,
-                joined=plan.grid is not None,
+                joined=plan.sample is None,
             )
             figure.savefig(fresh / f"{name}.png")
         shutil.rmtree(figures, ignore_errors=True)
