@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import logging
 import threading
+import time
 import warnings
 from collections.abc import Iterator, Sequence
+from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
@@ -21,6 +23,8 @@ from cogmap.sweeps.table import flat
 
 PATIENCE = 10.0
 """Seconds that a scheduler has to answer, and to find a worker."""
+PULSE = 0.05
+"""Seconds between two looks for what a cluster has done."""
 _alone = threading.Lock()
 """One point at a time in a process: they set the number of threads for all of it."""
 
@@ -107,18 +111,24 @@ def on_cluster(tasks: Sequence[Task], address: str) -> Iterator[None]:
         from distributed.scheduler import KilledWorker  # noqa: PLC0415
 
         futures = client.map(do, tasks, pure=False)
+        done = as_completed(futures, loop=client.loop)
+        lost = f"the Dask scheduler at {address} was lost; {KEPT}"
         try:
-            for future in as_completed(futures, loop=client.loop):
-                if future.cancelled() or future.status == "lost":
-                    raise CogmapError(f"the Dask scheduler at {address} was lost; {KEPT}")
-                try:
-                    yield future.result()
-                except KilledWorker:
-                    raise CogmapError(
-                        f"workers that did a point were killed, perhaps for lack of memory; {KEPT}"
-                    ) from None
+            for _ in tasks:
+                while not done.has_ready():
+                    if client.status != "running":
+                        raise CogmapError(lost)
+                    time.sleep(PULSE)
+                yield next(done).result()
+        except KilledWorker:
+            raise CogmapError(
+                f"workers that did a point were killed, perhaps for lack of memory; {KEPT}"
+            ) from None
+        except (OSError, CancelledError):
+            raise CogmapError(lost) from None
         finally:
-            client.cancel(futures)
+            if client.status == "running":
+                client.cancel(futures)
 
 
 @contextmanager

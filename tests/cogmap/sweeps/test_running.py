@@ -128,7 +128,7 @@ def cluster(lab: Laboratory, workers: int) -> Iterator[tuple[str, list[subproces
     options = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", file]
     processes = [subprocess.Popen([sys.executable, "-m", "dask", "scheduler", *options], **quiet)]
     try:
-        while not file.exists() and processes[0].poll() is None:
+        while not (file.exists() and file.stat().st_size) and processes[0].poll() is None:
             time.sleep(0.1)
         address = json.loads(file.read_text(encoding="utf-8"))["address"]
         worker = [
@@ -169,7 +169,7 @@ def test_a_scheduler_that_dies_is_one_sentence_and_the_rest_is_done_here(tmp_pat
             time.sleep(0.05)
         processes[0].kill()
         _, err = process.communicate(timeout=120)
-    assert process.returncode == 2
+    assert process.returncode == 2, err
     assert err.startswith(f"cogmap: the Dask scheduler at {address} was lost; all points that are finished")
     assert len(err.splitlines()) == 1
     kept = lab.finished()
