@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -17,25 +16,20 @@ from arena import (
     Arena,
     ArenaError,
     Body,
-    Brownian,
     Camera,
-    Chemotaxis,
-    Cyclic,
-    Motion,
     Nose,
     Recording,
-    Replay,
-    Rotation,
-    Track,
     explore,
     gallery,
 )
+from arena.motions.catalogue import MOTIONS
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.experiments.catalogue import experiment
 from cogmap.experiments.demo import demo
 from cogmap.plots import plot_room, plot_sheet
 from cogmap.scoring import score
+from cogmap.sweeps import Plan, sweep
 from cogmap.tables import as_table
 from neurons.errors import NeuronsError
 
@@ -48,15 +42,6 @@ app = App(
 
 Json = Annotated[bool, Parameter(name="--json", negative="", help="Print metrics as JSON on stdout.")]
 Seed = Annotated[int, Parameter(help="Of everything random; the same seed gives the same arrays.")]
-
-MOTIONS: dict[str, Callable[..., Motion]] = {
-    "brownian": Brownian,
-    "rotation": Rotation,
-    "cyclic": Cyclic,
-    "chemotaxis": Chemotaxis,
-    "track": Track,
-    "replay": Replay,
-}
 
 
 def main() -> None:
@@ -144,6 +129,63 @@ def _experiment(
         progress=sys.stderr.isatty(),
     )
     _report(result.metrics, as_json=as_json)
+
+
+@app.command(name="sweep")
+def _sweep(
+    plan: Path,
+    /,
+    *,
+    out: Path,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    retry_failed: Annotated[bool, Parameter(negative="")] = False,
+    keep_walks: Annotated[bool, Parameter(negative="")] = False,
+    as_json: Json = False,
+) -> None:
+    """Do an experiment at many points; killed at any moment, the same command goes on.
+
+    Examples: `cogmap sweep sweep.toml --out swept`; `cogmap sweep sweep.toml --out swept --retry-failed`;
+    `cogmap sweep sweep.toml --out /shared/swept --scheduler tcp://10.0.0.1:8786 --json`.
+
+    Parameters
+    ----------
+    plan
+        TOML file that says what is varied.
+    out
+        Folder for the table and the figures; all workers of a scheduler must see it.
+    scheduler
+        Address of a Dask scheduler, on whose workers the points are done.
+    workers
+        Processes on this machine; as many as cores by default.
+    retry_failed
+        Do points that have failed once more.
+    keep_walks
+        Keep the recordings that points share.
+    """
+    table = sweep(
+        Plan.load(plan),
+        out,
+        workers=workers,
+        scheduler=scheduler,
+        retry_failed=retry_failed,
+        keep_walks=keep_walks,
+        progress=sys.stderr.isatty(),
+    )
+    failed = table[table["error"] != ""]
+    if len(failed):
+        sys.stderr.write(
+            f"cogmap: {len(failed)} of {len(table)} points failed, the first with {failed['error'].iloc[0]}; "
+            "--retry-failed does them again\n"
+        )
+    untrusted = int((~table["trusted"].fillna(value=True)).sum())
+    told = {
+        "table": str(out / "table.csv"),
+        "rows": len(table),
+        "failed": len(failed),
+        "untrusted": untrusted,
+    }
+    _report(told, as_json=as_json)
 
 
 @app.command(name="arena")

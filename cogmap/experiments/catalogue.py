@@ -85,6 +85,7 @@ def experiment(
     views: int | None = None,
     seed: int = 0,
     progress: bool = False,
+    library: Path | None = None,
     **different: Any,
 ) -> Result:
     """Run an experiment by its name.
@@ -104,6 +105,8 @@ def experiment(
         Of walks, noise and all that is drawn.
     progress
         Whether to show progress on stderr.
+    library
+        Folder, which must exist, in which walks are looked for and left for other runs; None leaves none.
     different
         `nose`, `motion`, `camera`, or parameters of `CognitiveMap` as `map`, where the experiment takes them.
 
@@ -130,7 +133,7 @@ def experiment(
         TemporaryDirectory(prefix="cogmap-") as scratch,
     ):
         found = chosen.conduct(
-            Setting(room, views, seed, progress, Path(scratch), further=tuple(further), **different)
+            Setting(room, views, seed, progress, Path(scratch), library, further=tuple(further), **different)
         )
         about = {
             "experiment": name,

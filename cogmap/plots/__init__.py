@@ -23,6 +23,7 @@ from cogmap.plots.room import plot_room
 from cogmap.plots.routes import plot_routes
 from cogmap.plots.sheet import plot_sheet
 from cogmap.plots.translation import plot_translation
+from cogmap.plots.trends import plot_trend
 from cogmap.plots.views import plot_views
 from cogmap.plots.walk import plot_walk
 
@@ -50,6 +51,7 @@ __all__ = [
     "plot_routes",
     "plot_sheet",
     "plot_translation",
+    "plot_trend",
     "plot_tuning_curves",
     "plot_views",
     "plot_walk",
