@@ -35,6 +35,7 @@ from cogmap.errors import CogmapError
 from cogmap.experiments.catalogue import experiment
 from cogmap.experiments.demo import demo
 from cogmap.plots import plot_room, plot_sheet
+from cogmap.reporting import report
 from cogmap.scoring import score
 from cogmap.tables import as_table
 from neurons.errors import NeuronsError
@@ -318,6 +319,22 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
     )
     told = {"trusted": grown.trusted_, "reason": grown.reason_, "metric_reason": grown.metric_reason_}
     _report({**told, **figures}, as_json=as_json)
+
+
+@app.command(name="report")
+def _page(folder: Path, /, *, out: Path | None = None, as_json: Json = False) -> None:
+    """Show a result as one HTML page that needs nothing else: figures, tables, parameters, versions.
+
+    Examples: `cogmap report demo`; `cogmap report rotation --out spin.html`.
+
+    Parameters
+    ----------
+    folder
+        What `cogmap demo`, `cogmap experiment` or a sweep wrote.
+    out
+        The page; `report.html` in the folder by default. An earlier report there is replaced.
+    """
+    _report({"report": str(report(folder, out))}, as_json=as_json)
 
 
 def _with_truth(path: Path) -> Recording:
