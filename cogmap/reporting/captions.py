@@ -27,4 +27,4 @@ CAPTIONS = {
 
 def caption(name: str) -> str:
     """Say what a picture of this name shows; a picture nobody described has only its name."""
-    return CAPTIONS.get(name, name.replace("_", " ").replace("/", ": ").capitalize())
+    return CAPTIONS.get(name, name.replace("_", " ").capitalize())

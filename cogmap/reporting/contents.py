@@ -21,6 +21,8 @@ from cogmap.tables import as_rows, shown
 
 SWEPT = ("table.parquet", "table.csv")
 """The table of a sweep, in the order in which they are tried."""
+PLAN = "sweep.json"
+"""What a sweep varies."""
 LONGEST = 500
 """Rows of a sweep's table that are shown."""
 PARAMETERS = ("experiment", "arena", "views", "charts", "seed")
@@ -101,8 +103,7 @@ def read_contents(folder: Path) -> Contents:
             *(_read(path, _summary) for path in behind),
         ],
         files={
-            path.name: _read(path, lambda path: path.read_text("utf-8"))
-            for path in sorted(folder.glob("*.toml"))
+            path.name: _read(path, _text) for path in sorted([*folder.glob("*.toml"), *folder.glob(PLAN)])
         },
         command=about.get("command", ""),
         versions=about.get("versions", {}),
@@ -125,6 +126,10 @@ def _record(path: Path) -> dict[str, Any]:
     return record
 
 
+def _text(path: Path) -> str:
+    return path.read_text("utf-8")
+
+
 def _picture(path: Path, folder: Path) -> Picture:
     data = path.read_bytes()
     if not data.startswith(_PNG) or len(data) < 24:
@@ -132,7 +137,7 @@ def _picture(path: Path, folder: Path) -> Picture:
     width, height = (int.from_bytes(data[start : start + 4]) for start in (16, 20))
     name = path.relative_to(folder).with_suffix("").as_posix()
     return Picture(
-        name, caption(name), f"data:image/png;base64,{base64.b64encode(data).decode()}", width, height
+        name, caption(path.stem), f"data:image/png;base64,{base64.b64encode(data).decode()}", width, height
     )
 
 

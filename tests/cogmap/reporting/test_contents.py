@@ -68,7 +68,11 @@ def test_without_a_record_of_the_command(folder: Path) -> None:
 def test_a_sweep(tmp_path: Path, ending: str) -> None:
     table = pd.DataFrame({"nose.noise": np.arange(LONGEST + 1) / 4, "error": [None, *["boom"] * LONGEST]})
     (table.to_csv if ending == "csv" else table.to_parquet)(tmp_path / f"table.{ending}", index=False)
-    (tmp_path / "sweep.toml").write_text("views = 1", "utf-8")
+    (tmp_path / "sweep.json").write_text('{"views": 1}', "utf-8")
+    (tmp_path / "figures").mkdir()
+    figure = new_figure(2.0, 1.0)
+    figure.subplots().plot([0, 1])
+    figure.savefig(tmp_path / "figures" / "mean_rate.png")
     found = read_contents(tmp_path)
     assert found.title == "Sweep"
     (shown,) = found.tables
@@ -77,7 +81,8 @@ def test_a_sweep(tmp_path: Path, ending: str) -> None:
     assert shown.columns == ["nose.noise", "error"]
     assert shown.rows[:2] == [["0", "–"], ["0.25", "boom"]]
     assert len(shown.rows) == LONGEST
-    assert list(found.files) == ["sweep.toml"]
+    assert found.files == {"sweep.json": '{"views": 1}'}
+    assert [(one.name, one.caption) for one in found.pictures] == [("figures/mean_rate", "Mean rate")]
 
 
 def test_a_sweeps_table_is_shown_once(tmp_path: Path) -> None:
@@ -92,10 +97,11 @@ def test_a_sweeps_table_is_shown_once(tmp_path: Path) -> None:
     [
         ("metrics.json", "{"), ("metrics.json", "[]"), ("about.json", "x"), ("walk.png", "GIF8"),
         ("walk.png", "\x89PNG"), ("errors.parquet", "PAR1junk"), ("table.csv", ""), ("table.parquet", "x"),
+        ("short.png", "\x89PNG\r\n\x1a\n123"),
     ],
 )  # fmt: skip
 def test_damage_is_named(folder: Path, name: str, text: str) -> None:
-    (folder / name).write_text(text, encoding="utf-8")
+    (folder / name).write_text(text, encoding="latin-1", newline="")
     with pytest.raises(CogmapError, match=rf"{name} is damaged: .*run what wrote it again"):
         read_contents(folder)
 
@@ -108,5 +114,5 @@ def test_what_is_no_result(tmp_path: Path) -> None:
 
 
 def test_every_picture_has_words() -> None:
-    assert caption("fields/mean_rate") == "Fields: mean rate"
+    assert caption("mean_rate") == "Mean rate"
     assert all(text and not text.endswith(".") for text in CAPTIONS.values())
