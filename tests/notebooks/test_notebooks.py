@@ -14,7 +14,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "1_a_spin_is_a_ring": {"VIEWS": 300},
     "2_a_corridor_is_a_cylinder": {"VIEWS": 500},
     "3_a_room_is_a_solid_torus": {"VIEWS": 400},
-    "4_where_am_i": {"VIEWS": 1500, "ROUTES": 2},
+    "4_where_am_i": {"VIEWS": 1500},
     "5_cells_from_sight_and_smell": {"VIEWS": 800, "CHARTS": 250},
     "7_the_homology_of_emergent_maps": {"VIEWS": 800, "CHARTS": 250, "LANDMARKS": (100, 50)},
     "8_your_own_arena": {"MINUTES": 5, "CHARTS": 250},
