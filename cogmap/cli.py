@@ -27,7 +27,9 @@ from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.experiments.catalogue import experiment
 from cogmap.experiments.demo import demo
+from cogmap.export import export_nwb
 from cogmap.plots import plot_room, plot_sheet
+from cogmap.reporting import report
 from cogmap.scoring import score
 from cogmap.sweeps import Plan, sweep
 from cogmap.tables import as_table
@@ -360,6 +362,45 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
     )
     told = {"trusted": grown.trusted_, "reason": grown.reason_, "metric_reason": grown.metric_reason_}
     _report({**told, **figures}, as_json=as_json)
+
+
+@app.command(name="report")
+def _page(folder: Path, /, *, out: Path | None = None, as_json: Json = False) -> None:
+    """Show a result as one HTML page that needs nothing else: figures, tables, parameters, versions.
+
+    Examples: `cogmap report demo`; `cogmap report rotation --out spin.html`.
+
+    Parameters
+    ----------
+    folder
+        What `cogmap demo`, `cogmap experiment` or a sweep wrote.
+    out
+        The page; `report.html` in the folder by default. An earlier report there is replaced.
+    """
+    _report({"report": str(report(folder, out))}, as_json=as_json)
+
+
+@app.command(name="export")
+def _export(recording: Path, cmap: Path, /, *, out: Path, seed: Seed = 0, as_json: Json = False) -> None:
+    """Write a recording with the rates and spikes of a map's cells as NWB; needs `pip install 'cogmap[nwb]'`.
+
+    Example: `cogmap export walk.zarr map --out walk.nwb`.
+
+    Parameters
+    ----------
+    recording
+        Folder that `cogmap explore` wrote.
+    cmap
+        Folder of the map whose cells look, which `cogmap learn` wrote.
+    out
+        The file; it must not exist.
+    """
+    walk, grown = _with_truth(recording), CognitiveMap.load(cmap)
+    export_nwb(walk, grown, out, seed=seed)
+    _report(
+        {"nwb": str(out), "views": len(walk), "units": grown.place_cells + grown.heading_cells},
+        as_json=as_json,
+    )
 
 
 def _with_truth(path: Path) -> Recording:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from arena import Arena
 from cogmap.errors import CogmapError
+from cogmap.experiments.about import write_about
 from cogmap.experiments.acuity import acuity
 from cogmap.experiments.brownian import brownian
 from cogmap.experiments.cue_rotation import cue_rotation
@@ -144,4 +145,5 @@ def experiment(
         result = Result({**about, **found.metrics}, found.tables, found.figures)
         if folder is not None:
             result.write(folder)
+            write_about(folder, ("experiment", name), room, views=views, seed=seed, **different)
     return result
