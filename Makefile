@@ -3,7 +3,7 @@ PYTHON ?= python3
 OUT ?= demo
 BIN := .venv/bin
 
-.PHONY: demo test lint bench verify clean
+.PHONY: demo test lint bench verify notebooks clean
 
 demo: .venv/installed
 	$(BIN)/cogmap demo --out $(OUT)
@@ -22,6 +22,9 @@ bench: .venv/peers
 
 verify: .venv/installed
 	$(BIN)/python -m pytest -m full -rA
+
+notebooks: .venv/installed
+	$(BIN)/jupyter execute --inplace --timeout=1800 notebooks/*.ipynb
 
 .venv/installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv

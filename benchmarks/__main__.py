@@ -14,13 +14,25 @@ from benchmarks.learning import learning
 from benchmarks.manifold import manifold
 from benchmarks.rendering import rendering
 from benchmarks.stepping import stepping
+from benchmarks.streaming import streaming
+from benchmarks.sweeping import sweeping
 from benchmarks.timing import Figures
 from benchmarks.walking import walking
 from cogmap.tables import as_table
 
 SUBJECTS = {
     subject.__name__: subject
-    for subject in (rendering, walking, exploring, stepping, learning, evaluating, manifold)
+    for subject in (
+        rendering,
+        walking,
+        exploring,
+        stepping,
+        learning,
+        streaming,
+        evaluating,
+        manifold,
+        sweeping,
+    )
 }
 
 

@@ -7,6 +7,7 @@ from cogmap.errors import CogmapError
 from cogmap.manifold import BagOfWords, Betti, LandmarkIsomap, betti
 from cogmap.navigation import Localiser, VisualRoadmap
 from cogmap.scoring import score
+from cogmap.sweeps import Plan, sweep
 
 __all__ = [
     "Activity",
@@ -16,6 +17,7 @@ __all__ = [
     "CognitiveMap",
     "LandmarkIsomap",
     "Localiser",
+    "Plan",
     "VisualRoadmap",
     "betti",
     "cells",
@@ -23,4 +25,5 @@ __all__ = [
     "navigation",
     "plots",
     "score",
+    "sweep",
 ]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -17,25 +16,22 @@ from arena import (
     Arena,
     ArenaError,
     Body,
-    Brownian,
     Camera,
-    Chemotaxis,
-    Cyclic,
-    Motion,
     Nose,
     Recording,
-    Replay,
-    Rotation,
-    Track,
     explore,
     gallery,
 )
+from arena.motions.catalogue import MOTIONS
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.experiments.catalogue import experiment
 from cogmap.experiments.demo import demo
+from cogmap.export import export_nwb
 from cogmap.plots import plot_room, plot_sheet
+from cogmap.reporting import report
 from cogmap.scoring import score
+from cogmap.sweeps import Plan, sweep
 from cogmap.tables import as_table
 from neurons.errors import NeuronsError
 
@@ -48,15 +44,6 @@ app = App(
 
 Json = Annotated[bool, Parameter(name="--json", negative="", help="Print metrics as JSON on stdout.")]
 Seed = Annotated[int, Parameter(help="Of everything random; the same seed gives the same arrays.")]
-
-MOTIONS: dict[str, Callable[..., Motion]] = {
-    "brownian": Brownian,
-    "rotation": Rotation,
-    "cyclic": Cyclic,
-    "chemotaxis": Chemotaxis,
-    "track": Track,
-    "replay": Replay,
-}
 
 
 def main() -> None:
@@ -118,8 +105,8 @@ def _experiment(
     """Run an experiment of the paper: a table of metrics, figures, and the data behind them.
 
     On the manifold of views: rotation, cyclic, brownian, similarity, localisation, roadmap and
-    distinguishability. On the cells: fusion, walks, sources, acuity, darkness, cue_rotation,
-    goals and directionality.
+    distinguishability. On the cells: fusion, walks, sources, acuity, darkness, cue_rotation, goals,
+    directionality and neurons. On the holes of all that a map knows: homology.
 
     Examples: `cogmap experiment rotation`; `cogmap experiment brownian --views 4000 --seed 1 --out walk`;
     `cogmap experiment fusion --arena pillar`; `cogmap experiment localisation --arena obstacles --json`.
@@ -144,6 +131,63 @@ def _experiment(
         progress=sys.stderr.isatty(),
     )
     _report(result.metrics, as_json=as_json)
+
+
+@app.command(name="sweep")
+def _sweep(
+    plan: Path,
+    /,
+    *,
+    out: Path,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    retry_failed: Annotated[bool, Parameter(negative="")] = False,
+    keep_walks: Annotated[bool, Parameter(negative="")] = False,
+    as_json: Json = False,
+) -> None:
+    """Do an experiment at many points; killed at any moment, the same command goes on.
+
+    Examples: `cogmap sweep sweep.toml --out swept`; `cogmap sweep sweep.toml --out swept --retry-failed`;
+    `cogmap sweep sweep.toml --out /shared/swept --scheduler tcp://10.0.0.1:8786 --json`.
+
+    Parameters
+    ----------
+    plan
+        TOML file that says what is varied.
+    out
+        Folder for the table and the figures; all workers of a scheduler must see it.
+    scheduler
+        Address of a Dask scheduler, on whose workers the points are done.
+    workers
+        Processes on this machine; as many as cores by default.
+    retry_failed
+        Do points that have failed once more.
+    keep_walks
+        Keep the recordings that points share.
+    """
+    table = sweep(
+        Plan.load(plan),
+        out,
+        workers=workers,
+        scheduler=scheduler,
+        retry_failed=retry_failed,
+        keep_walks=keep_walks,
+        progress=sys.stderr.isatty(),
+    )
+    failed = table[table["error"] != ""]
+    if len(failed):
+        sys.stderr.write(
+            f"cogmap: {len(failed)} of {len(table)} points failed, the first with {failed['error'].iloc[0]}; "
+            "--retry-failed does them again\n"
+        )
+    untrusted = int((~table["trusted"].fillna(value=True)).sum())
+    told = {
+        "table": str(out / "table.csv"),
+        "rows": len(table),
+        "failed": len(failed),
+        "untrusted": untrusted,
+    }
+    _report(told, as_json=as_json)
 
 
 @app.command(name="arena")
@@ -318,6 +362,45 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
     )
     told = {"trusted": grown.trusted_, "reason": grown.reason_, "metric_reason": grown.metric_reason_}
     _report({**told, **figures}, as_json=as_json)
+
+
+@app.command(name="report")
+def _page(folder: Path, /, *, out: Path | None = None, as_json: Json = False) -> None:
+    """Show a result as one HTML page that needs nothing else: figures, tables, parameters, versions.
+
+    Examples: `cogmap report demo`; `cogmap report rotation --out spin.html`.
+
+    Parameters
+    ----------
+    folder
+        What `cogmap demo`, `cogmap experiment` or a sweep wrote.
+    out
+        The page; `report.html` in the folder by default. An earlier report there is replaced.
+    """
+    _report({"report": str(report(folder, out))}, as_json=as_json)
+
+
+@app.command(name="export")
+def _export(recording: Path, cmap: Path, /, *, out: Path, seed: Seed = 0, as_json: Json = False) -> None:
+    """Write a recording with the rates and spikes of a map's cells as NWB; needs `pip install 'cogmap[nwb]'`.
+
+    Example: `cogmap export walk.zarr map --out walk.nwb`.
+
+    Parameters
+    ----------
+    recording
+        Folder that `cogmap explore` wrote.
+    cmap
+        Folder of the map whose cells look, which `cogmap learn` wrote.
+    out
+        The file; it must not exist.
+    """
+    walk, grown = _with_truth(recording), CognitiveMap.load(cmap)
+    export_nwb(walk, grown, out, seed=seed)
+    _report(
+        {"nwb": str(out), "views": len(walk), "units": grown.place_cells + grown.heading_cells},
+        as_json=as_json,
+    )
 
 
 def _with_truth(path: Path) -> Recording:

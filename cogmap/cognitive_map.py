@@ -19,6 +19,7 @@ from cogmap.activity import Activity
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_views, checked_count, log_odours
 from cogmap.layers import EPOCHS, IN_ORDER, Layers
+from cogmap.merging import forked, merge
 from cogmap.storage import read_map, write_map
 from cogmap.threads import one_thread
 from neurons.retina import Retina
@@ -151,6 +152,54 @@ class CognitiveMap:
                 self._layers.learn(strip, smells[rows])
         return self
 
+    def fork(self) -> CognitiveMap:
+        """Give another explorer a map of the same charts, which has learnt nothing yet in the present stage.
+
+        So what it learns is not what this one has learnt already, and `merge` adds it. Stages whose work can
+        be shared in this way are those of `cogmap.merging.SUMS`: olfaction, gauge and afferents.
+
+        Raises
+        ------
+        CogmapError
+            In a stage in which units compete for views, so that learning depends on their order.
+        """
+        self._check_grown()
+        other = CognitiveMap(**self._settings())
+        other._retina, other.view_shape_, other.odorants_ = self._retina, self.view_shape_, self.odorants_
+        other.seconds_ = {}
+        with one_thread():
+            other._layers = forked(self._layers)
+        return other
+
+    def merge(self, other: CognitiveMap) -> CognitiveMap:
+        """Add what another map, grown from the same charts, has learnt in the present stage.
+
+        Two maps that each learnt half of the views are then as one that learnt them all, but for rounding.
+        The other is left as it is, and the next view follows the last one of this map.
+
+        Raises
+        ------
+        CogmapError
+            When the other differs in its charts, in what it learnt in earlier stages, in its stage or its
+            sizes, or when the stage is one in which units compete.
+
+        Examples
+        --------
+        Two explorers share the third stage and all that follows but the fourth:
+
+        >>> cmap = CognitiveMap(epoch=3000)
+        >>> cmap.partial_fit(views, odours)  # 10 epochs: code and charts
+        >>> away = cmap.fork()  # or many; `save` and `load` take them to other machines
+        >>> cmap.partial_fit(views_here, odours_here, jump=True)
+        >>> away.partial_fit(views_there, odours_there, jump=True)
+        >>> cmap.merge(away)  # as if it had seen both
+        """
+        self._check_grown()
+        other._check_grown()
+        with one_thread():
+            merge(self._layers, other._layers)
+        return self
+
     def perceive(self, views: Any = None, *, odours: ArrayLike | None = None) -> Activity:
         """Let the map look at views, or smell odours in the dark, which tells place only.
 
@@ -210,16 +259,8 @@ class CognitiveMap:
             When something is at the path already, or it cannot be written.
         """
         self._check_grown()
-        settings = {
-            "charts": self.charts,
-            "components": self.components,
-            "place_cells": self.place_cells,
-            "heading_cells": self.heading_cells,
-            "epoch": self.epoch,
-            "seed": self.seed,
-        }
         learnt = {"view_shape": self.view_shape_, "odorants": self.odorants_, "epoch": self._layers.epoch}
-        write_map(Path(path), self._layers.state_dict(), settings, learnt)
+        write_map(Path(path), self._layers.state_dict(), self._settings(), learnt)
 
     @classmethod
     def load(cls, path: str | Path) -> CognitiveMap:
@@ -238,6 +279,16 @@ class CognitiveMap:
         except (KeyError, TypeError, RuntimeError) as error:
             raise CogmapError(f"{path} does not hold a whole map: {error}") from None
         return loaded
+
+    def _settings(self) -> dict[str, int]:
+        return {
+            "charts": self.charts,
+            "components": self.components,
+            "place_cells": self.place_cells,
+            "heading_cells": self.heading_cells,
+            "epoch": self.epoch,
+            "seed": self.seed,
+        }
 
     def _begin(self, view_shape: tuple[int, ...], odorants: int, *, epoch: int) -> None:
         self._retina = Retina(*view_shape[:2])

@@ -89,19 +89,18 @@ class Layers(nn.Module):
     @property
     def stage(self) -> str:
         """The stage of development that the next view falls into; the last one never ends."""
-        end = 0
-        for stage in STAGES:
-            end += EPOCHS[stage] * self.epoch
-            if int(self.age) < end:
-                return stage
-        return STAGES[-1]
+        return next(stage for stage in reversed(STAGES) if self.begins(stage) <= int(self.age))
+
+    def begins(self, stage: str) -> int:
+        """How many views come before a stage."""
+        return self.epoch * sum(EPOCHS[before] for before in STAGES[: STAGES.index(stage)])
 
     def learn(
         self, strips: Float[Tensor, "views features"], log_odours: Float[Tensor, "views odorants"]
     ) -> None:
         """Let the layer whose period it is learn from a batch."""
+        self.mature()
         stage = self.stage
-        self._mature(stage)
         self.age += len(strips)
         if stage == "code":
             self.code.partial_fit(strips)
@@ -152,14 +151,13 @@ class Layers(nn.Module):
 
     def _winners(self) -> int:
         """Charts that learn from the next view, falling geometrically over their stage."""
-        begun = EPOCHS["code"] * self.epoch
-        share = min(1.0, max(0.0, (int(self.age) - begun) / (EPOCHS["charts"] * self.epoch)))
+        share = min(1.0, max(0.0, (int(self.age) - self.begins("charts")) / (EPOCHS["charts"] * self.epoch)))
         first, last = WINNERS
         return round(float(first * (last / first) ** share))
 
-    def _mature(self, stage: str) -> None:
-        """Fix what came before `stage`, once."""
-        while int(self.matured) < STAGES.index(stage):
+    def mature(self) -> None:
+        """Fix what came before the present stage, once."""
+        while int(self.matured) < STAGES.index(self.stage):
             self.matured += 1
             entered = STAGES[int(self.matured)]
             if entered == "olfaction":

@@ -10,14 +10,17 @@ UNITS = {"_m": "m", "_deg": "°", "_bytes": "bytes"}
 
 def as_table(metrics: Mapping[str, Any]) -> str:
     """Lay out a record as lines of name, value and unit; names of nested records are joined by dots."""
-    flat: dict[str, Any] = {}
-    for name, value in metrics.items():
-        if isinstance(value, Mapping):
-            flat |= {f"{name}.{key}": part for key, part in _flat(value).items()}
-        else:
-            flat[name] = value
-    rows = [(name, _shown(value), _unit(name)) for name, value in flat.items() if value != ""]
-    return pd.DataFrame(rows, columns=["figure", "value", "unit"]).to_string(index=False)
+    return pd.DataFrame(as_rows(metrics), columns=["figure", "value", "unit"]).to_string(index=False)
+
+
+def as_rows(metrics: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    """Give name, value and unit of each entry that is not empty, those of nested records too."""
+    return [(name, shown(value), _unit(name)) for name, value in _flat(metrics).items() if value != ""]
+
+
+def shown(value: object) -> str:
+    """Print a value, a fraction with four digits."""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def _flat(record: Mapping[str, Any]) -> dict[str, Any]:
@@ -28,10 +31,6 @@ def _flat(record: Mapping[str, Any]) -> dict[str, Any]:
         else:
             parts[name] = value
     return parts
-
-
-def _shown(value: object) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
 def _unit(name: str) -> str:

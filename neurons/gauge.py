@@ -49,7 +49,8 @@ class Gauge(nn.Module):
 
     again a synchronisation, of places connected by walking. The sums are kept for two halves of the walk,
     alternating; unless the map of either foretells the displacements of the other, nothing is learnt, and
-    `complain` says so. Sums can be added to by a stream and merged between maps of the same place cells.
+    `complain` says so. Sums can be added to by a stream and merged between maps of the same place cells; in
+    double precision, as S⁻¹ makes much of little.
 
     Parameters
     ----------
@@ -75,10 +76,13 @@ class Gauge(nn.Module):
     def __init__(self, cells: int, odorants: int) -> None:
         super().__init__()
         features = cells * (odorants + 1)
-        self.register_buffer("spread", torch.zeros(2, features, features))
-        self.register_buffer("ahead", torch.zeros(2, cells, features, 2))
-        self.register_buffer("shared", torch.zeros(2, cells, cells))
-        self.register_buffer("counted", torch.zeros(2, 2))
+        for name, shape in {
+            "spread": (features, features),
+            "ahead": (cells, features, 2),
+            "shared": (cells, cells),
+            "counted": (2,),
+        }.items():
+            self.register_buffer(name, torch.zeros(2, *shape, dtype=torch.double))
         self.register_buffer("seen", torch.zeros((), dtype=torch.int64))
         self.register_buffer("recent", torch.full((LAG, odorants + 1), torch.nan))
         self.register_buffer("foretold", torch.full((2,), torch.nan))
@@ -110,7 +114,7 @@ class Gauge(nn.Module):
         under = share[1:-1].unfold(0, LAG - 1, 1).mean(dim=2)
         for number in (0, 1):
             mine = straight & (half == number)
-            v, w, u = moved[mine], under[mine], direction[mine]
+            v, w, u = moved[mine].double(), under[mine].double(), direction[mine].to(torch.cdouble)
             self.spread[number] += v.T @ v
             back = (w[:, :, None] * torch.view_as_real(u.conj().resolve_conj())[:, None]).movedim(2, 0)
             self.ahead[number] += (back.mT @ v).movedim(0, 2)
@@ -148,9 +152,9 @@ class Gauge(nn.Module):
     def _evidence(self, halves: slice) -> "_Evidence":
         power, pairs = self.counted[halves].sum(dim=0).tolist()
         return _Evidence(
-            self.spread[halves].double().sum(dim=0),
-            torch.view_as_complex(self.ahead[halves].double().sum(dim=0)),
-            self.shared[halves].double().sum(dim=0),
+            self.spread[halves].sum(dim=0),
+            torch.view_as_complex(self.ahead[halves].sum(dim=0)),
+            self.shared[halves].sum(dim=0),
             power,
             pairs,
         )

@@ -14,7 +14,8 @@ class Olfaction(nn.Module):
     """Per chart, the regression of log odour on f = [1, U_k (z − C_k)], kept as sums.
 
     Each view adds h f fᵀ and h f oᵀ to the charts it excites; `solve` gives the intercepts a_k and Jacobians
-    J_k. Sums can be added to by a stream and merged between maps grown from the same charts.
+    J_k. Sums can be added to by a stream and merged between maps grown from the same charts; in double
+    precision, so that it hardly matters in which order.
     """
 
     gram: Tensor
@@ -22,8 +23,8 @@ class Olfaction(nn.Module):
 
     def __init__(self, charts: int, odorants: int) -> None:
         super().__init__()
-        self.register_buffer("gram", torch.zeros(charts, DIMENSIONS + 1, DIMENSIONS + 1))
-        self.register_buffer("cross", torch.zeros(charts, DIMENSIONS + 1, odorants))
+        self.register_buffer("gram", torch.zeros(charts, DIMENSIONS + 1, DIMENSIONS + 1, dtype=torch.double))
+        self.register_buffer("cross", torch.zeros(charts, DIMENSIONS + 1, odorants, dtype=torch.double))
 
     def partial_fit(
         self,
@@ -37,16 +38,15 @@ class Olfaction(nn.Module):
         weighted = weight[:, :, None] * f
         gram = (weighted[:, :, :, None] * f[:, :, None]).flatten(0, 1)
         cross = (weighted[:, :, :, None] * log_odour[:, None, None]).flatten(0, 1)
-        self.gram.index_add_(0, chart.flatten(), gram)
-        self.cross.index_add_(0, chart.flatten(), cross)
+        self.gram.index_add_(0, chart.flatten(), gram.double())
+        self.cross.index_add_(0, chart.flatten(), cross.double())
 
     def solve(self) -> tuple[Float[Tensor, "charts odorants"], Float[Tensor, "charts 3 odorants"]]:
         """Give intercepts (log concentration at the centre) and Jacobians (per unit of chart coordinate)."""
-        gram = self.gram.double()
-        slopes = torch.diagonal(gram, dim1=1, dim2=2)[:, 1:].mean(dim=1)
-        prior = torch.zeros_like(gram)
+        slopes = torch.diagonal(self.gram, dim1=1, dim2=2)[:, 1:].mean(dim=1)
+        prior = torch.zeros_like(self.gram)
         for d in range(1, DIMENSIONS + 1):
             prior[:, d, d] = RIDGE * slopes + 1e-9
         prior[:, 0, 0] = 1e-9
-        solution = torch.linalg.solve(gram + prior, self.cross.double()).float()
+        solution = torch.linalg.solve(self.gram + prior, self.cross).float()
         return solution[:, 0], solution[:, 1:]

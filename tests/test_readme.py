@@ -5,17 +5,29 @@ from pathlib import Path
 
 import pytest
 
+from cogmap import Plan
+from cogmap.sweeps.points import points_of
+
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 
 
-def test_the_python_examples_run(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_python_examples_run(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
     for example in re.findall(r"```python\n(.*?)```", README, re.DOTALL):
         exec(compile(example, "README.md", "exec"), {})  # noqa: S102
-    scores, numbers, coordinates = capsys.readouterr().out.splitlines()
+    scores, numbers, coordinates, swept = capsys.readouterr().out.splitlines()
     assert "heading_median_deg" in scores
     assert numbers == "(1, 1, 0)"
     assert coordinates.startswith("(400, 2) 1 ")
     assert coordinates.endswith(" 1.0")
+    assert swept == "2 True"
+
+
+def test_the_sweep_can_be_begun() -> None:
+    (text,) = re.findall(r"```toml\n(.*?)```", README, re.DOTALL)
+    assert len(points_of(Plan.parse(text))) == 18
 
 
 def test_every_command_and_picture_exists() -> None:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from arena import Arena
 from cogmap.errors import CogmapError
+from cogmap.experiments.about import write_about
 from cogmap.experiments.acuity import acuity
 from cogmap.experiments.brownian import brownian
 from cogmap.experiments.cue_rotation import cue_rotation
@@ -19,7 +20,9 @@ from cogmap.experiments.directionality import directionality
 from cogmap.experiments.distinguishability import distinguishability
 from cogmap.experiments.fusion import fusion
 from cogmap.experiments.goals import goals
+from cogmap.experiments.homology import homology
 from cogmap.experiments.localisation import localisation
+from cogmap.experiments.neurons import neurons
 from cogmap.experiments.outputs import result_folder
 from cogmap.experiments.result import Result
 from cogmap.experiments.roadmap import roadmap
@@ -44,6 +47,8 @@ class Experiment(NamedTuple):
     """Whether it can be done in other rooms."""
     takes: tuple[str, ...] = ()
     """Which of `nose`, `motion`, `camera` and `map` may differ from its own."""
+    further: tuple[str, ...] = ()
+    """Rooms that it visits as well, unless told where to take place."""
 
 
 EXPERIMENTS = {
@@ -62,6 +67,14 @@ EXPERIMENTS = {
     "cue_rotation": Experiment(cue_rotation, "open_field", 17_000, takes=("nose", "motion", "camera", "map")),
     "goals": Experiment(goals, "furnished", 17_000, takes=("camera",)),
     "directionality": Experiment(directionality, "furnished", 17_000, takes=("nose", "camera", "map")),
+    "neurons": Experiment(neurons, "furnished", 17_000, takes=("nose", "camera", "map")),
+    "homology": Experiment(
+        homology,
+        "open_field",
+        17_000,
+        takes=("nose", "camera", "map"),
+        further=("furnished", "pillar", "two_pillars", "l_shape"),
+    ),
 }
 
 
@@ -73,6 +86,7 @@ def experiment(
     views: int | None = None,
     seed: int = 0,
     progress: bool = False,
+    library: Path | None = None,
     **different: Any,
 ) -> Result:
     """Run an experiment by its name.
@@ -85,13 +99,15 @@ def experiment(
         Folder for `metrics.json`, figures and the data behind them; an earlier result there is replaced at
         the end. None writes nothing.
     room
-        Where; the room that the experiment was made for when None.
+        Where; the room or rooms that the experiment was made for when None.
     views
         To learn from; as many as the figures of the paper need when None.
     seed
         Of walks, noise and all that is drawn.
     progress
         Whether to show progress on stderr.
+    library
+        Folder, which must exist, in which walks are looked for and left for other runs; None leaves none.
     different
         `nose`, `motion`, `camera`, or parameters of `CognitiveMap` as `map`, where the experiment takes them.
 
@@ -111,14 +127,23 @@ def experiment(
             takes = ", ".join(chosen.takes) or "nothing but room, views and seed"
             raise CogmapError(f"{name} does not take another {what}; it takes {takes}")
     views = chosen.views if views is None else checked_count("views", views, FEWEST)
-    room = room or Arena.load(chosen.room)
+    names = (chosen.room, *chosen.further)
+    room, *further = [Arena.load(name) for name in names] if room is None else [room]
     with (
         nullcontext() if out is None else result_folder(out) as folder,
         TemporaryDirectory(prefix="cogmap-") as scratch,
     ):
-        found = chosen.conduct(Setting(room, views, seed, progress, Path(scratch), **different))
-        about = {"experiment": name, "arena": room.name, "views": views, "seed": seed}
+        found = chosen.conduct(
+            Setting(room, views, seed, progress, Path(scratch), library, further=tuple(further), **different)
+        )
+        about = {
+            "experiment": name,
+            "arena": ", ".join(one.name for one in (room, *further)),
+            "views": views,
+            "seed": seed,
+        }
         result = Result({**about, **found.metrics}, found.tables, found.figures)
         if folder is not None:
             result.write(folder)
+            write_about(folder, ("experiment", name), room, views=views, seed=seed, **different)
     return result

@@ -31,6 +31,7 @@ from cogmap.cells import (
 from cogmap.cells.decoding import decode_positions
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
+from cogmap.experiments.about import write_about
 from cogmap.experiments.homologies import homologies
 from cogmap.experiments.outputs import METRICS, result_folder
 from cogmap.experiments.setting import FRESH, FRESH_SEED, poses_of
@@ -47,6 +48,9 @@ from cogmap.plots import (
     plot_views,
 )
 from cogmap.scoring import score
+
+LANDMARKS = (400, 150)
+"""On which loops and voids are measured."""
 
 
 @dataclass
@@ -78,7 +82,7 @@ def demo(
     *,
     views: int = 17_000,
     charts: int | None = None,
-    landmarks: tuple[int, int] = (400, 150),
+    landmarks: tuple[int, int] = LANDMARKS,
     seed: int = 0,
     progress: bool = False,
 ) -> dict[str, Any]:
@@ -154,6 +158,8 @@ def demo(
         }
         if folder is not None:
             (folder / METRICS).write_text(json.dumps(metrics, indent=2) + "\n", encoding="utf-8")
+            different = {} if landmarks == LANDMARKS else {"landmarks": landmarks}
+            write_about(folder, ("demo",), room, views=views, charts=charts, seed=seed, **different)
         return metrics
 
 

@@ -20,8 +20,8 @@ def homologies(
     """Betti numbers of the view manifold, the fused map and both populations.
 
     The view manifold is the codes, the fused map (recalled log odour, cos φ, sin φ), a population the square
-    roots of its rates, whose Poisson noise is the same at every rate. Computed side by side in `JOBS`
-    processes.
+    roots of its rates, whose Poisson noise is the same at every rate. What a map without a compass does not
+    know, because it is NaN, is left out. Computed side by side in `JOBS` processes.
 
     References
     ----------
@@ -33,6 +33,7 @@ def homologies(
         "place": np.sqrt(activity.place),
         "heading": np.sqrt(activity.heading),
     }
+    clouds = {name: cloud for name, cloud in clouds.items() if np.isfinite(cloud).all()}
     found = Parallel(n_jobs=JOBS)(
         delayed(betti)(cloud, landmarks=landmarks, seed=seed) for cloud in clouds.values()
     )

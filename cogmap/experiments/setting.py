@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,6 +10,7 @@ from tempfile import mkdtemp
 from typing import Any
 
 import numpy as np
+from filelock import FileLock
 from jaxtyping import Float
 
 from arena import Arena, Body, Camera, Motion, Nose, Recording, explore
@@ -34,6 +36,8 @@ class Setting:
     """Whether to show progress on stderr."""
     scratch: Path | None = None
     """Folder to keep views in while the experiment lasts; in memory when None."""
+    library: Path | None = None
+    """Folder to keep views in for all who take the same walk, in this process or another."""
     nose: Nose = _NOSE
     """To smell with."""
     motion: Motion | None = None
@@ -42,6 +46,8 @@ class Setting:
     """To look through; the experiment's own when None."""
     map: Mapping[str, Any] = field(default_factory=dict)
     """Parameters of `CognitiveMap` that differ from the experiment's own."""
+    further: tuple[Arena, ...] = ()
+    """Rooms to visit after the first, by an experiment of several."""
 
     def explore(
         self,
@@ -54,19 +60,31 @@ class Setting:
     ) -> Recording:
         """Walk through the room, by `motion` and `camera` where the setting has none of its own.
 
-        The walk is the same whatever the camera.
+        The walk is the same whatever the camera. From a library, it is taken once: who else wants it waits.
         """
-        return explore(
-            self.room,
-            self.motion or motion,
-            self.camera or camera,
-            body=body,
-            nose=self.nose,
-            views=self.views if views is None else views,
-            seed=self.seed + FRESH_SEED * fresh,
-            out=None if self.scratch is None else Path(mkdtemp(dir=self.scratch)) / "walk.zarr",
-            progress=self.progress,
-        )
+        way, eye = self.motion or motion, self.camera or camera
+        views = self.views if views is None else views
+        seed = self.seed + FRESH_SEED * fresh
+
+        def walk(out: Path | None) -> Recording:
+            return explore(
+                self.room,
+                way,
+                eye,
+                body=body,
+                nose=self.nose,
+                views=views,
+                seed=seed,
+                out=out,
+                progress=self.progress,
+            )
+
+        if self.library is None:
+            return walk(None if self.scratch is None else Path(mkdtemp(dir=self.scratch)) / "walk.zarr")
+        described = repr((self.room, way, eye, body, self.nose, views, seed))
+        shelf = self.library / hashlib.sha256(described.encode()).hexdigest()[:32]
+        with FileLock(shelf.with_suffix(".lock")):
+            return walk(shelf.with_suffix(".zarr"))
 
 
 def poses_of(recording: Recording) -> Float[np.ndarray, "views 3"]:

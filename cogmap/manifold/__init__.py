@@ -8,6 +8,7 @@ from cogmap.manifold.homology import Betti, betti
 from cogmap.manifold.isomap import LandmarkIsomap
 from cogmap.manifold.nearest import Nearest, nearest_points
 from cogmap.manifold.neighbours import Components, components, lengthen_shortcuts, neighbour_graph
+from cogmap.manifold.nerve import Nerve, population_nerve
 from cogmap.manifold.similarity import (
     Agreement,
     cosine_distances,
@@ -27,6 +28,7 @@ __all__ = [
     "LandmarkIsomap",
     "Loop",
     "Nearest",
+    "Nerve",
     "betti",
     "circular_coordinate",
     "components",
@@ -40,5 +42,6 @@ __all__ = [
     "nearest_points",
     "neighbour_graph",
     "pixel_distances",
+    "population_nerve",
     "pose_agreement",
 ]

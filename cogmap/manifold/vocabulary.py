@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 from jaxtyping import Float32, Int
-from sklearn.cluster import KMeans, kmeans_plusplus
-
-from cogmap.threads import one_thread
 
 EXAMPLES = 25_000
 """Most descriptors that are clustered."""
-CANDIDATES = 6
-"""Examples for each word from which the first centres are drawn: nearly all the time goes into drawing."""
 ROUNDS = 10
 """Of k-means; more hardly change how well words tell places."""
 CHUNK = 2048
@@ -34,12 +30,10 @@ def learn_words(
     distinct = np.unique(examples, axis=0)
     if len(distinct) <= count:
         return distinct
-    some = distinct[:: max(1, len(distinct) // (CANDIDATES * count))]
-    drawn = int(np.random.SeedSequence(seed).generate_state(1)[0])
-    with one_thread():
-        first = kmeans_plusplus(some, count, random_state=drawn)[0]
-        means = KMeans(count, init=first, n_init=1, max_iter=ROUNDS, tol=0).fit(examples)
-    return np.asarray(means.cluster_centers_)
+    cv2.setRNGSeed(int(np.random.SeedSequence(seed).generate_state(1)[0] >> 1))
+    stop = (cv2.TERM_CRITERIA_MAX_ITER, ROUNDS, 0.0)
+    labels = np.empty((len(examples), 1), np.int32)
+    return np.asarray(cv2.kmeans(examples, count, labels, stop, 1, cv2.KMEANS_PP_CENTERS)[2])
 
 
 def nearest_words(

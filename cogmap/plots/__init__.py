@@ -1,10 +1,13 @@
 """The figures, from results only: arrays in, a matplotlib Figure out."""
 
+from cogmap.plots.afferents import plot_afferents
+from cogmap.plots.barcode_grid import plot_barcode_grid
 from cogmap.plots.barcodes import plot_barcodes
 from cogmap.plots.cases import plot_cases
 from cogmap.plots.cell_types import plot_cell_types
 from cogmap.plots.compass import plot_compass
 from cogmap.plots.confusion import plot_confusion
+from cogmap.plots.courses import plot_courses
 from cogmap.plots.embedding import plot_embedding
 from cogmap.plots.examples import Tuning, plot_examples
 from cogmap.plots.goals import plot_goals
@@ -20,16 +23,20 @@ from cogmap.plots.room import plot_room
 from cogmap.plots.routes import plot_routes
 from cogmap.plots.sheet import plot_sheet
 from cogmap.plots.translation import plot_translation
+from cogmap.plots.trends import plot_trend
 from cogmap.plots.views import plot_views
 from cogmap.plots.walk import plot_walk
 
 __all__ = [
     "Tuning",
+    "plot_afferents",
+    "plot_barcode_grid",
     "plot_barcodes",
     "plot_cases",
     "plot_cell_types",
     "plot_compass",
     "plot_confusion",
+    "plot_courses",
     "plot_embedding",
     "plot_examples",
     "plot_goals",
@@ -44,6 +51,7 @@ __all__ = [
     "plot_routes",
     "plot_sheet",
     "plot_translation",
+    "plot_trend",
     "plot_tuning_curves",
     "plot_views",
     "plot_walk",

@@ -232,12 +232,24 @@ def test_an_experiment_leaves_its_metrics(run, tmp_path: Path) -> None:
     assert status == 0
     assert json.loads(said) == json.loads((out / "metrics.json").read_text(encoding="utf-8"))
     assert {"views.png", "views.parquet"} <= {file.name for file in out.iterdir()}
+    assert json.loads(run("report", out, "--json")[1]) == {"report": str(out / "report.html")}
+    assert "--views 200 --seed 1" in (out / "report.html").read_text(encoding="utf-8")
+    refused(run("report", tmp_path), "is not the result of")
+
+
+def test_export_writes_nwb(run, folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "walk.nwb"
+    status, said, err = run("export", folder / "walk.zarr", folder / "map", "--out", out, "--json")
+    assert status == 0, err
+    assert json.loads(said) == {"nwb": str(out), "views": 3000, "units": 210}
+    refused(run("export", folder / "walk.zarr", folder / "map", "--out", out), "exists already")
+    refused(run("export", folder / "blind.zarr", folder / "map", "--out", tmp_path / "x.nwb"), "no poses")
 
 
 def test_help_gives_examples(run) -> None:
     said = run("experiment", "--help")[1]
     assert all(name in said for name in EXPERIMENTS)
-    for command in ("demo", "experiment", "arena", "explore", "learn", "score"):
+    for command in ("demo", "experiment", "arena", "explore", "learn", "score", "report", "export"):
         status, out, _ = run(command, "--help")
         assert status == 0
         assert f"cogmap {command} " in " ".join(out.split())

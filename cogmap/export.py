@@ -1,0 +1,177 @@
+"""A recording with its cells as NWB, the format in which physiologists share such data."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from contextlib import suppress
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float
+
+from arena import Recording
+from cogmap.cells import poisson_spikes
+from cogmap.cognitive_map import CognitiveMap
+from cogmap.errors import CogmapError
+from cogmap.inputs import checked_count
+
+START = datetime(2000, 1, 1, tzinfo=UTC)
+"""When a simulated session begins: the format asks for a date, and there is none."""
+RESOLUTION = 1e-6
+"""Of spike times, s."""
+LONGEST = 2.0
+"""How long a view lasts at most, in medians of the time between views: in the gaps of a path nobody looks."""
+_ROOM = "origin in the middle of the room, x to the right, y up"
+_COMPASS = "0 along x, counter-clockwise"
+
+
+def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int = 0) -> None:
+    """Write where the body was, how fast every cell fired and when it spiked, as a new NWB file.
+
+    The cells look at the views. In each view a cell spikes n ~ Poisson(λ T) times, spread evenly over how
+    long the view lasts, T, which is until the next.
+
+    Parameters
+    ----------
+    recording
+        With poses; the times must increase.
+    cmap
+        The map whose cells look.
+    out
+        The file; it must not exist. It takes this name only when it is whole.
+    seed
+        Of the spikes.
+
+    Raises
+    ------
+    CogmapError
+        When pynwb is missing, the recording does not suit map or format, something is at the path already, or
+        it cannot be written.
+
+    References
+    ----------
+    Rübel et al. (2022), The Neurodata Without Borders ecosystem for neurophysiological data science.
+    """
+    try:
+        import pynwb  # noqa: PLC0415
+    except ImportError:
+        raise CogmapError(
+            "writing NWB needs pynwb, which is not installed; run `pip install 'cogmap[nwb]'`"
+        ) from None
+    if out.exists() or out.is_symlink():
+        raise CogmapError(
+            f"{out} exists already and is left as it is; choose another path or remove it first"
+        )
+    if recording.poses is None:
+        raise CogmapError("the recording has no poses to export; use one that kept them")
+    lasting = _durations(recording.times)
+    rng = np.random.default_rng(checked_count("seed", seed, 0))
+    activity = cmap.perceive(recording.views)
+    rates = {name: getattr(activity, name).astype(float) for name in ("place", "heading")}
+    spikes = {name: _spike_times(cells, recording.times, lasting, rng) for name, cells in rates.items()}
+    file = _lay_out(recording, rates, spikes)
+    partial = out.with_name(f".{out.stem}.{os.getpid()}.partial.nwb")
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with pynwb.NWBHDF5IO(partial, "w") as disk:
+            disk.write(file)
+        partial.rename(out)
+    except OSError as error:
+        raise CogmapError(f"cannot write {out}: {error.strerror or error}") from None
+    finally:
+        with suppress(OSError):
+            partial.unlink()
+
+
+def _durations(times: Float[np.ndarray, " views"]) -> Float[np.ndarray, " views"]:
+    """Tell how long each view lasts, s."""
+    if len(times) < 2 or not (np.diff(times) > 0).all():
+        raise CogmapError(
+            "the times of the recording do not increase; give two views or more, in their order"
+        )
+    steps = np.diff(times)
+    usual = float(np.median(steps))
+    lasting: np.ndarray = np.minimum(np.append(steps, usual), LONGEST * usual)
+    return lasting
+
+
+def _spike_times(
+    rates: Float[np.ndarray, "views cells"],
+    times: Float[np.ndarray, " views"],
+    lasting: Float[np.ndarray, " views"],
+    rng: np.random.Generator,
+) -> list[Float[np.ndarray, " spikes"]]:
+    """Draw the times of each cell's spikes, s."""
+    counts = poisson_spikes(rates * lasting[:, None], rng, peak=None, seconds=1.0)
+    trains = []
+    for count in counts.T:
+        when = np.repeat(times, count) + np.repeat(lasting, count) * rng.random(count.sum())
+        trains.append(np.sort(when).round(-round(np.log10(RESOLUTION))))
+    return trains
+
+
+def _lay_out(
+    recording: Recording,
+    rates: dict[str, Float[np.ndarray, "views _"]],
+    spikes: dict[str, list[Float[np.ndarray, "_"]]],
+) -> Any:
+    """Put everything where the format wants it."""
+    from pynwb import NWBFile, TimeSeries  # noqa: PLC0415
+    from pynwb.behavior import CompassDirection, Position, SpatialSeries  # noqa: PLC0415
+    from pynwb.file import Subject  # noqa: PLC0415
+
+    poses = np.asarray(recording.poses)
+    file = NWBFile(
+        session_description="Simulated: a body explores a room and its cells look. The date is nominal.",
+        identifier=hashlib.sha256(b"".join(part.tobytes() for part in (poses, *rates.values()))).hexdigest(),
+        session_start_time=START,
+        experiment_description="Place cells and head-direction cells that emerged from sight and smell.",
+        keywords=["place cells", "head-direction cells", "simulation"],
+        experimenter="cogmap, simulation",
+        institution="none, this is a simulation",
+        subject=Subject(
+            subject_id="explorer",
+            description="A simulated body, no animal: the species is that of the unidentified.",
+            species="http://purl.obolibrary.org/obo/NCBITaxon_32644",
+            sex="U",
+            age="P0D/",
+        ),
+    )
+    behavior = file.create_processing_module("behavior", "Where the body truly was.")
+    position = SpatialSeries(
+        name="position",
+        description="x and y of the body.",
+        data=poses[:, :2],
+        timestamps=recording.times,
+        unit="meters",
+        reference_frame=_ROOM,
+    )
+    heading = SpatialSeries(
+        name="heading",
+        description="Where the body faced.",
+        data=poses[:, 2],
+        timestamps=position,
+        unit="radians",
+        reference_frame=_COMPASS,
+    )
+    behavior.add(Position(spatial_series=position))
+    behavior.add(CompassDirection(spatial_series=heading))
+    cells = file.create_processing_module("misc", "How fast the cells of the map fired, view by view.")
+    file.add_unit_column("cell_type", "Population of the cell: place or heading.")
+    for kind, fired in rates.items():
+        cells.add(
+            TimeSeries(
+                name=f"{kind}_rates",
+                description=f"Rates of the {kind} cells, a column for each in the order of its units.",
+                data=fired.astype(np.float32),
+                timestamps=position,
+                unit="hertz",
+            )
+        )
+        for train in spikes[kind]:
+            file.add_unit(spike_times=train, cell_type=kind)
+    file.units.resolution = RESOLUTION
+    return file

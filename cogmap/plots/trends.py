@@ -1,0 +1,214 @@
+"""A statistic of a sweep against each parameter that was varied."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, NullLocator
+from pandas.api.types import is_bool_dtype, is_numeric_dtype
+from scipy.stats import t
+
+from cogmap.plots.style import BAD, GOOD, INK, SMALL, TINY, new_figure, tidy, tidy_legend
+
+CONFIDENCE = 0.95
+MOST_LINES = 6
+"""A second parameter with at most so many values gives each a line of its own."""
+_MARKERS = "osD^vP"
+_COLUMNS = 3
+_ASIDE = 0.07
+"""Between the dots of two lines at the same category, of the way to the next."""
+_UNITS = {
+    "_m": "m",
+    "_m2": "m²",
+    "_deg": "°",
+    "_rad": "rad",
+    "_hz": "Hz",
+    "arena.decay_length": "m",
+    "motion.speed": "m/s",
+    "camera.width": "pixels",
+    "camera.height": "pixels",
+    "camera.eye_height": "m",
+    "camera.field_of_view": "rad",
+    "nose.noise": "s.d. of log concentration",
+    "nose.correlation_time": "s",
+}
+"""By ends of names."""
+
+
+class _Axis(NamedTuple):
+    """Where the values of a parameter lie."""
+
+    name: str
+    levels: list[Any]
+    is_category: bool
+    is_log: bool
+
+    def place(self, value: Any) -> float:
+        return float(self.levels.index(value)) if self.is_category else float(value)
+
+
+def statistics_of(table: pd.DataFrame, varied: Sequence[str]) -> list[str]:
+    """Name the columns of a sweep's table that are numbers and not all the same."""
+    beside = {*varied, "seed", "views"}
+    return [
+        str(name)
+        for name, column in table.items()
+        if name not in beside and is_numeric_dtype(column.dtype) and len(column.dropna().unique()) > 1
+    ]
+
+
+def summarise(table: pd.DataFrame, statistic: str, by: Sequence[str]) -> pd.DataFrame:
+    r"""Average a statistic over seeds, with the interval in which the mean lies with 95 % confidence.
+
+    .. math:: \bar s \pm t_{.975, n - 1} \sqrt{\mathrm{var}(s) / n}
+
+    where s are the means of each of n seeds over whatever else was varied. Rows that failed or are not
+    trusted are left out.
+
+    Returns
+    -------
+    pd.DataFrame
+        The columns of `by`, `mean`, `half` (the interval's half length, NaN for one seed) and `seeds`.
+    """
+    sound = table[_is_sound(table) & table[statistic].notna()]
+    each = sound.assign(_=sound[statistic].astype(float)).groupby([*by, "seed"], sort=True)["_"].mean()
+    groups = each.groupby(level=list(range(len(by))))
+    count = groups.count()
+    factor = t.ppf((1 + CONFIDENCE) / 2, np.maximum(count - 1, 1))
+    half = groups.std() / np.sqrt(count) * factor
+    return pd.DataFrame({"mean": groups.mean(), "half": half, "seeds": count}).reset_index()
+
+
+def plot_trend(
+    table: pd.DataFrame,
+    statistic: str,
+    varied: Sequence[str],
+    *,
+    logarithmic: Collection[str] = (),
+    labels: Mapping[str, str] | None = None,
+    joined: bool = True,
+) -> Figure:
+    """Draw a statistic against each parameter in a panel of its own.
+
+    Dots are means over seeds and bars their 95 % confidence intervals; what else was varied is averaged
+    over, but for a parameter of few values, which has a line for each. Crosses are rows that are not trusted.
+
+    Parameters
+    ----------
+    table
+        Of a sweep.
+    statistic
+        Its column.
+    varied
+        Columns of the parameters.
+    logarithmic
+        Which of these lie on a log scale.
+    labels
+        What to call a column, instead of its name and unit.
+    joined
+        Whether values stand on a grid, and lines join them; else every point of a sample stands alone.
+    """
+    called = labels or {}
+    columns = min(_COLUMNS, len(varied))
+    rows = math.ceil(len(varied) / columns)
+    figure = new_figure(4.0 * columns, 3.1 * rows)
+    panels = figure.subplots(rows, columns, squeeze=False, sharey=True)
+    for axes in panels.flat[len(varied) :]:
+        axes.set_axis_off()
+    for name, axes in zip(varied, panels.flat, strict=False):
+        first = axes in panels[:, 0]
+        tidy(axes, x=_called(name, called), y=_called(statistic, called) if first else "")
+        axis = _axis(table, name, is_log=name in logarithmic)
+        other = _second(table, name, varied) if joined else None
+        if not joined:
+            _draw(axes, summarise(table, statistic, list(varied)), axis, line="none", label="", mark=0)
+        elif other is None:
+            _draw(axes, summarise(table, statistic, [name]), axis, line="-", label="", mark=0)
+        else:
+            every = summarise(table, statistic, [name, other])
+            for mark, (value, some) in enumerate(every.groupby(other, sort=True)):
+                _draw(axes, some, axis, line="-", label=_short(value), mark=mark)
+            if len(every):
+                tidy_legend(axes, title=_called(other, called))
+        _draw_doubted(axes, table, statistic, axis)
+        _scale(axes, axis)
+    seeds = table["seed"].nunique()
+    lost = int((~_is_sound(table)).sum())
+    told = f"mean of {seeds} seeds with 95 % confidence intervals" if seeds > 1 else "one seed"
+    doubt = f"; {lost} of {len(table)} rows failed or are not trusted (×) and left out" if lost else ""
+    figure.suptitle(told + doubt, fontsize=SMALL, color=INK)
+    return figure
+
+
+def _is_sound(table: pd.DataFrame) -> pd.Series:
+    return (table["error"].fillna("") == "") & table["trusted"].fillna(value=True).astype(bool)
+
+
+def _axis(table: pd.DataFrame, name: str, *, is_log: bool) -> _Axis:
+    column = table[name]
+    is_category = not is_numeric_dtype(column.dtype) or is_bool_dtype(column.dtype)
+    return _Axis(name, sorted(column.unique().tolist()), is_category, is_log and not is_category)
+
+
+def _second(table: pd.DataFrame, name: str, varied: Sequence[str]) -> str | None:
+    """Choose the other parameter whose values have lines of their own."""
+    few = {other: table[other].nunique() for other in varied if other != name}
+    few = {other: count for other, count in few.items() if 1 < count <= MOST_LINES}
+    return min(few, key=lambda other: few[other]) if few else None
+
+
+def _draw(axes: Axes, means: pd.DataFrame, axis: _Axis, *, line: str, label: str, mark: int) -> None:
+    colour = colormaps["tab10"](mark) if label else GOOD
+    aside = _ASIDE * mark if axis.is_category else 0.0
+    axes.errorbar(
+        [axis.place(value) + aside for value in means[axis.name]],
+        means["mean"],
+        means["half"].fillna(0.0),
+        fmt=_MARKERS[mark % len(_MARKERS)],
+        linestyle="none" if axis.is_category else line,
+        color=colour,
+        markersize=4,
+        linewidth=1.2,
+        elinewidth=0.9,
+        capsize=2,
+        label=label,
+    )
+
+
+def _draw_doubted(axes: Axes, table: pd.DataFrame, statistic: str, axis: _Axis) -> None:
+    doubted = table[~_is_sound(table) & table[statistic].notna()]
+    places = [axis.place(value) for value in doubted[axis.name]]
+    axes.plot(places, doubted[statistic].astype(float), "x", color=BAD, markersize=4)
+
+
+def _scale(axes: Axes, axis: _Axis) -> None:
+    if axis.is_log:
+        axes.set_xscale("log")
+    if axis.is_category:
+        axes.set_xticks(range(len(axis.levels)), [_short(value) for value in axis.levels], fontsize=TINY)
+        axes.set_xlim(-0.5, len(axis.levels) - 0.5)
+    elif len(axis.levels) <= MOST_LINES:
+        axes.set_xticks([float(value) for value in axis.levels], [_short(value) for value in axis.levels])
+        axes.xaxis.set_minor_locator(NullLocator())
+    elif axis.is_log:
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def _called(name: str, labels: Mapping[str, str]) -> str:
+    if name in labels:
+        return labels[name]
+    unit = next((unit for end, unit in _UNITS.items() if name.endswith(end)), "")
+    plain = name.replace("_", " ").removesuffix(f" {unit}").removesuffix(" deg").removesuffix(" rad")
+    return f"{plain} ({unit})" if unit else plain
+
+
+def _short(value: object) -> str:
+    text = f"{value:g}" if isinstance(value, int | float) else str(value)
+    return text if len(text) <= 18 else f"{text[:17]}…"

@@ -1,0 +1,55 @@
+"""One self-contained page: no script, and nothing that is fetched from elsewhere."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from cogmap.errors import CogmapError
+from cogmap.reporting.contents import read_contents
+
+_PAGES = Environment(
+    loader=PackageLoader("cogmap.reporting", "."),
+    autoescape=True,
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+_MARK = '<meta name="generator" content="cogmap report">'
+"""By which an earlier report is known."""
+
+
+def report(folder: Path, out: Path | None = None) -> Path:
+    """Write a result as one HTML page.
+
+    Parameters
+    ----------
+    folder
+        What `cogmap demo`, `cogmap experiment` or `cogmap sweep` wrote.
+    out
+        The page, `report.html` in the folder when None; an earlier report there is replaced at the end.
+
+    Raises
+    ------
+    CogmapError
+        When the folder is no result or damaged, something other than a report is at `out`, or it
+        cannot be written.
+    """
+    out = folder / "report.html" if out is None else out
+    page = _PAGES.get_template("report.html").render(found=read_contents(folder), mark=_MARK)
+    partial = out.with_name(f".{out.name}.{os.getpid()}.partial")
+    try:
+        if out.exists() and (not out.is_file() or _MARK.encode() not in out.read_bytes()[:1000]):
+            raise CogmapError(f"{out} exists and is not a report; choose another path or remove it first")
+        out.parent.mkdir(parents=True, exist_ok=True)
+        partial.write_text(page, encoding="utf-8")
+        partial.replace(out)
+    except OSError as error:
+        raise CogmapError(f"cannot write {out}: {error.strerror or error}") from None
+    finally:
+        with suppress(OSError):
+            partial.unlink()
+    return out

@@ -1,0 +1,172 @@
+"""How a sweep lies on disk: its plan, and one file for each point that is finished."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from filelock import FileLock, Timeout
+
+from cogmap.errors import CogmapError
+from cogmap.sweeps.plan import Plan
+from cogmap.sweeps.points import Point
+
+MARK = "sweep.json"
+"""What marks a folder as that of a sweep."""
+FORMAT = "cogmap sweep 1"
+
+KEPT = "all points that are finished are kept, and the same command goes on from there"
+"""What a sweep that ends early says."""
+
+Record = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """The folder of a sweep, seen by all who work on it.
+
+    A file in `points` is whole whenever it is there. In `work` is what may be lost: locks and what is being
+    written. In `walks` are recordings that points share.
+    """
+
+    folder: Path
+
+    @property
+    def walks(self) -> Path:
+        """Where recordings are shared."""
+        return self.folder / "walks"
+
+    @property
+    def work(self) -> Path:
+        """Where locks are, and files until they are whole."""
+        return self.folder / "work"
+
+    @contextmanager
+    def opened(self, plan: Plan, points: Sequence[Point], *, keep_walks: bool = False) -> Iterator[None]:
+        """Begin a sweep or go on with it, alone; at a good end, put away what is no longer needed.
+
+        Raises
+        ------
+        CogmapError
+            When the folder holds something else, someone else is at it, or it cannot be written.
+        """
+        self._check_own()
+        with writing(self.folder):
+            self.work.mkdir(parents=True, exist_ok=True)
+        lock = FileLock(self.work / "sweep.lock")
+        try:
+            lock.acquire(timeout=0)
+        except Timeout:
+            raise CogmapError(
+                f"another command is at the sweep in {self.folder}; wait for its end or choose another"
+            ) from None
+        with lock:
+            self._lay_out(plan, points)
+            yield
+            shutil.rmtree(self.work, ignore_errors=True)
+            if not keep_walks:
+                shutil.rmtree(self.walks, ignore_errors=True)
+
+    def read(self, point: Point) -> Record | None:
+        """Give what is known of a point, None when it is not finished.
+
+        Raises
+        ------
+        CogmapError
+            For a file that is no longer what was written.
+        """
+        path = self._path(point)
+        try:
+            record = json.loads(path.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            return None
+        except (OSError, ValueError):
+            record = None
+        if not isinstance(record, dict) or not {"metrics", "error"} & record.keys():
+            raise CogmapError(f"{path} is damaged; remove it and the same command does this point again")
+        return record
+
+    def write(self, point: Point, record: Record) -> None:
+        """Put down what was found, or that it failed."""
+        text = json.dumps({"point": point.described, **record}, indent=1) + "\n"
+        with self.replacing(self._path(point)) as fresh:
+            fresh.write_text(text, encoding="utf-8")
+
+    def lock(self, point: Point) -> FileLock:
+        """Make the lock of a point, which whoever works on it holds."""
+        return FileLock(self.work / f"{point.digest}.lock")
+
+    @contextmanager
+    def replacing(self, path: Path) -> Iterator[Path]:
+        """Give a path to write to; the file takes the place of `path` once it is whole and on the disk."""
+        fresh = self.work / f"{path.stem}.{os.getpid()}{path.suffix}"
+        with writing(self.folder):
+            try:
+                yield fresh
+                with fresh.open("rb+") as file:
+                    os.fsync(file.fileno())
+                fresh.replace(path)
+            finally:
+                fresh.unlink(missing_ok=True)
+
+    def _path(self, point: Point) -> Path:
+        return self.folder / "points" / f"{point.digest}.json"
+
+    def _check_own(self) -> None:
+        """Raise unless the folder is free, empty or a sweep's."""
+        if not self.folder.exists() and not self.folder.is_symlink():
+            return
+        if not self.folder.is_dir() or (
+            {file.name for file in self.folder.iterdir()} - {self.work.name}
+            and not (self.folder / MARK).is_file()
+        ):
+            raise CogmapError(f"{self.folder} exists and is not the folder of a sweep; choose another")
+
+    def _lay_out(self, plan: Plan, points: Sequence[Point]) -> None:
+        mark = self.folder / MARK
+        digest = hashlib.sha256("".join(sorted(point.digest for point in points)).encode()).hexdigest()
+        if mark.exists():
+            try:
+                found = json.loads(mark.read_text(encoding="utf-8"))
+                known = found["format"], found["digest"]
+            except (OSError, ValueError, LookupError, TypeError):
+                raise CogmapError(f"{mark} is damaged; choose another folder for the sweep") from None
+            if known != (FORMAT, digest):
+                raise CogmapError(
+                    f"{self.folder} holds another sweep (of {found.get('experiment')!r}); "
+                    "choose another folder or remove it first"
+                )
+        else:
+            described = plan.model_dump(mode="json", by_alias=True, exclude_defaults=True)
+            told = {"format": FORMAT, "digest": digest, **described}
+            with self.replacing(mark) as fresh:
+                fresh.write_text(json.dumps(told, indent=2) + "\n", encoding="utf-8")
+        with writing(self.folder):
+            for folder in (self.folder / "points", self.walks):
+                folder.mkdir(exist_ok=True)
+
+
+@contextmanager
+def writing(folder: Path) -> Iterator[None]:
+    """Turn what goes wrong with the disk into a sentence."""
+    try:
+        yield
+    except OSError as error:
+        raise CogmapError(f"cannot write to {folder}: {error.strerror or error}; {KEPT}") from None
+
+
+def is_full_disk(error: BaseException | None) -> bool:
+    """Whether an error, or one that led to it, says that there is no space left to write."""
+    while error is not None:
+        if isinstance(error, OSError) and error.errno in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}:
+            return True
+        error = error.__cause__ or error.__context__
+    return False

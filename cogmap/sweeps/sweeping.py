@@ -1,0 +1,121 @@
+"""A sweep from its plan to its table and figures."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pandas as pd
+from tqdm import tqdm
+
+from cogmap.errors import CogmapError
+from cogmap.experiments.catalogue import EXPERIMENTS
+from cogmap.inputs import checked_count
+from cogmap.plots.trends import plot_trend, statistics_of
+from cogmap.sweeps.ledger import Ledger, Record, writing
+from cogmap.sweeps.plan import Plan
+from cogmap.sweeps.points import Point, points_of
+from cogmap.sweeps.running import Task, on_cluster, on_this_machine
+from cogmap.sweeps.table import table_of
+
+
+def sweep(
+    plan: Plan,
+    out: str | Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    retry_failed: bool = False,
+    keep_walks: bool = False,
+    progress: bool = False,
+) -> pd.DataFrame:
+    """Do an experiment at every point of a plan with every seed.
+
+    Each finished point is a file in `out`, so that after a kill the same call goes on and does none of them
+    twice. A point that fails is put down with its error, and the others go on. The table is the same bit by
+    bit whoever does the points.
+
+    Parameters
+    ----------
+    plan
+        What is varied, as `Plan.load("sweep.toml")`.
+    out
+        Folder for `table.csv`, `table.parquet`, `figures` and what is needed to go on. With a scheduler, all
+        workers must see it by this path.
+    workers
+        Processes on this machine; as many as cores when None.
+    scheduler
+        Address of a Dask scheduler, on whose workers the points are done instead.
+    retry_failed
+        Whether points that have failed are done again.
+    keep_walks
+        Whether recordings that points share are kept in `out` at the end.
+    progress
+        Whether to show a bar with the time left on stderr.
+
+    Returns
+    -------
+    pd.DataFrame
+        A row for each point and seed: what varies, `seed`, the metrics with nested names joined by dots, and
+        `trusted`, `reason` and `error`; without times and memory.
+
+    Raises
+    ------
+    ArenaError, CogmapError
+        For a plan that cannot be, before anything is done; a folder that holds something else; a full disk; a
+        scheduler that does not answer.
+    """
+    workers = None if workers is None else checked_count("workers", workers)
+    if workers is not None and scheduler is not None:
+        raise CogmapError("workers are counted on this machine and a scheduler has its own; give one of them")
+    points = points_of(plan)
+    ledger = Ledger(Path(out).resolve())
+    with ledger.opened(plan, points, keep_walks=keep_walks):
+        tasks = [Task(ledger, point, EXPERIMENTS[point.experiment], retry_failed) for point in points]
+        left = [task for task in tasks if _is_left(ledger.read(task.point), again=retry_failed)]
+        done = len(tasks) - len(left)
+        with tqdm(total=len(tasks), initial=done, unit="point", disable=not progress) as bar:
+            if left:
+                doing = on_this_machine(left, workers) if scheduler is None else on_cluster(left, scheduler)
+                for _ in doing:
+                    bar.update()
+        table = table_of(points, [_finished(ledger, point) for point in points])
+        _write(ledger, table, plan)
+    return table
+
+
+def _is_left(record: Record | None, *, again: bool) -> bool:
+    return record is None or (again and "error" in record)
+
+
+def _finished(ledger: Ledger, point: Point) -> Record:
+    record = ledger.read(point)
+    if record is None:
+        raise CogmapError(
+            f"a point that was done has vanished from {ledger.folder}; give the same command again"
+        )
+    return record
+
+
+def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
+    """Write the table and its figures."""
+    with ledger.replacing(ledger.folder / "table.csv") as fresh:
+        table.to_csv(fresh, index=False)
+    with ledger.replacing(ledger.folder / "table.parquet") as fresh:
+        table.to_parquet(fresh, index=False)
+    figures, fresh = ledger.folder / "figures", ledger.work / "figures"
+    with writing(ledger.folder):
+        shutil.rmtree(fresh, ignore_errors=True)
+        fresh.mkdir()
+        for name in statistics_of(table, plan.varied):
+            figure = plot_trend(
+                table,
+                name,
+                plan.varied,
+                logarithmic=plan.logarithmic,
+                labels=plan.labels,
+                joined=plan.sample is None,
+            )
+            figure.savefig(fresh / f"{name}.png")
+        shutil.rmtree(figures, ignore_errors=True)
+        fresh.rename(figures)

@@ -1,0 +1,207 @@
+from copy import deepcopy
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from torch import Tensor
+
+from arena import Arena, Brownian, Camera, Recording, explore
+from cogmap import CogmapError, CognitiveMap
+from cogmap.layers import EPOCHS, IN_ORDER, STAGES, Layers
+from cogmap.merging import OWN, SUMS, forked, merge
+
+EPOCH, VIEWS = 400, 1000
+Views = tuple[Tensor, Tensor]
+
+
+def stream(count: int, seed: int) -> Views:
+    """A walk over a cylinder in 30 dimensions, and smells that depend on where along and across it is."""
+    rng = torch.Generator().manual_seed(seed)
+    pose = (0.1 * torch.randn(count, 3, generator=rng)).cumsum(dim=0)
+    core = torch.column_stack([pose[:, :2].sin(), pose[:, 2].cos(), pose[:, 2].sin()])
+    mixing = torch.linalg.qr(torch.randn(30, 4, generator=torch.Generator().manual_seed(9))).Q
+    return core @ mixing.T, torch.column_stack([core[:, :2], core[:, 0] + core[:, 1]])
+
+
+def learn(layers: Layers, views: Views) -> None:
+    strips, smells = views
+    for some in range(0, len(strips), 50):
+        layers.learn(strips[some : some + 50], smells[some : some + 50])
+
+
+def young(**sizes: int) -> Layers:
+    usual = {"charts": 60, "components": 8, "place_cells": 10, "heading_cells": 6, "epoch": EPOCH}
+    return Layers(30, 3, **{**usual, **sizes}, generator=torch.Generator().manual_seed(0))
+
+
+@pytest.fixture(scope="module")
+def begun() -> dict[str, Layers]:
+    """Layers with two batches behind them in each stage."""
+    found, layers = {}, young()
+    for number, stage in enumerate(STAGES):
+        learn(layers, stream(layers.begins(stage) - int(layers.age), number) if number else stream(0, 0))
+        learn(layers, stream(100, 100 + number))
+        found[stage] = deepcopy(layers)
+    return found
+
+
+def differing(one: Layers, other: Layers, tolerance: float = 0.0) -> set[str]:
+    """Names of what differs by more than a fraction of its largest value."""
+    names, its = set(), other.state_dict()
+    for name, value in one.state_dict().items():
+        mine, theirs = (each.double().nan_to_num(nan=7e7) for each in (value, its[name]))
+        if (mine - theirs).abs().max() > tolerance * mine.abs().max():
+            names.add(name)
+    return names
+
+
+@pytest.mark.parametrize("stage", SUMS)
+@settings(deadline=None, max_examples=10)
+@given(split=st.integers(0, 150), seed=st.integers(0, 99))
+def test_halves_are_the_whole(begun: dict[str, Layers], stage: str, split: int, seed: int) -> None:
+    strips, smells = stream(150, seed)
+    whole = deepcopy(begun[stage])
+    merged, *halves = (forked(whole), forked(whole), forked(whole))
+    merge(merged, whole)
+    for part, half in zip((slice(split), slice(split, None)), halves, strict=True):
+        whole.gauge.jump()
+        learn(whole, (strips[part], smells[part]))
+        learn(half, (strips[part], smells[part]))
+        merge(merged, half)
+    # which half of the evidence of the gauge a view falls to depends on how many came before
+    apart = {"gauge.spread", "gauge.ahead", "gauge.shared", "gauge.counted"}
+    assert differing(whole, merged, 1e-5) <= {"gauge.recent", *apart}
+    for name in apart:
+        one, other = (each.get_buffer(name).sum(dim=0) for each in (whole, merged))
+        torch.testing.assert_close(one, other, atol=1e-9, rtol=1e-5)
+
+
+@pytest.mark.parametrize("stage", SUMS)
+@settings(deadline=None, max_examples=10)
+@given(views=st.tuples(st.integers(0, 500), st.integers(0, 500)))
+def test_commutative_and_nothing_adds_nothing(
+    begun: dict[str, Layers], stage: str, views: tuple[int, int]
+) -> None:
+    one, other = forked(begun[stage]), forked(begun[stage])
+    ages = [each.age.clone() for each in (one, other)]
+    for each, count, seed in zip((one, other), views, (1, 2), strict=True):
+        learn(each, stream(min(count, EPOCHS[stage] * EPOCH), seed))
+    left, right = deepcopy(one), deepcopy(other)
+    merge(left, other)
+    merge(right, one)
+    assert differing(left, right) <= {"gauge.recent"}
+    assert one.gauge.recent.equal(left.gauge.recent) or one.gauge.recent.isnan().any()
+    unchanged = deepcopy(left)
+    merge(unchanged, forked(begun[stage]))
+    assert not differing(unchanged, left)
+    assert ages == [begun[stage].begins(stage)] * 2
+    assert left.gauge.seen == one.gauge.seen + other.gauge.seen - (stage == "afferents") * one.gauge.seen
+
+
+@pytest.mark.parametrize("stage", SUMS)
+def test_a_fork_has_learnt_nothing_of_its_stage_and_the_rest_as_well(
+    begun: dict[str, Layers], stage: str
+) -> None:
+    layers = deepcopy(begun[stage])
+    fork = forked(layers)
+    assert not differing(layers, begun[stage])
+    assert differing(fork, layers) <= {*SUMS[stage], *OWN}
+    assert all(not fork.get_buffer(name).any() for name in SUMS[stage])
+    assert fork.gauge.recent.isnan().all()
+    assert fork.age == layers.begins(stage)
+    assert fork.stage == stage
+
+
+def test_many_views_end_a_stage_but_no_other(begun: dict[str, Layers]) -> None:
+    crowd = [forked(begun["olfaction"]) for _ in range(4)]
+    for seed, each in enumerate(crowd):
+        learn(each, stream(EPOCH, seed))
+        assert each.stage == "cells"
+    first, *others = crowd
+    for each in others:
+        merge(first, each)
+    assert first.age == first.begins("cells")
+    endless = [forked(begun["afferents"]) for _ in range(4)]
+    for each in endless:
+        learn(each, stream(EPOCH, 0))
+        merge(endless[0], each) if each is not endless[0] else None
+    assert endless[0].age == first.begins("afferents") + 4 * EPOCH
+
+
+def test_what_cannot_be_added_up_is_refused(begun: dict[str, Layers]) -> None:
+    for stage in set(STAGES) - set(SUMS):
+        with pytest.raises(CogmapError, match=f"'{stage}' stage, in which units compete"):
+            forked(begun[stage])
+        with pytest.raises(CogmapError, match="units compete"):
+            merge(deepcopy(begun[stage]), begun[stage])
+    smelling = deepcopy(begun["olfaction"])
+    with pytest.raises(CogmapError, match="'olfaction' stage and the other in its 'gauge'"):
+        merge(smelling, begun["gauge"])
+    for sizes in ({"charts": 61}, {"place_cells": 11}, {"epoch": 401}):
+        with pytest.raises(CogmapError, match="differ in views, odorants"):
+            merge(deepcopy(smelling), young(**sizes))
+    for name in ("charts.centres", "code.weight", "recall.spacing"):
+        other = deepcopy(smelling)
+        other.get_buffer(name)[-1].mul_(1.001)
+        with pytest.raises(CogmapError, match=f"same charts: {name} differs"):
+            merge(smelling, other)
+    assert not differing(smelling, begun["olfaction"])
+
+
+def test_copies_made_where_a_stage_begins_merge_with_or_without_views(begun: dict[str, Layers]) -> None:
+    fresh = deepcopy(begun["charts"])
+    learn(fresh, stream(fresh.begins("olfaction") - int(fresh.age), 5))
+    other = deepcopy(fresh)
+    learn(other, stream(100, 6))
+    idle = deepcopy(fresh)
+    merge(idle, other)
+    assert differing(idle, other) <= {"gauge.recent"}
+
+
+def grown(walk: Recording, *, split: int | None, folder: Path) -> CognitiveMap:
+    """Learn epoch after epoch, by two explorers from `split` on in stages whose work can be shared."""
+    cmap = CognitiveMap(charts=200, components=20, epoch=VIEWS)
+    order = np.random.default_rng(0)
+    for stage, epochs in EPOCHS.items():
+        for _ in range(epochs):
+            rows = np.arange(VIEWS) if stage == IN_ORDER else order.permutation(VIEWS)
+            if stage not in SUMS:
+                cmap.partial_fit(walk.views[rows], walk.odours[rows])
+                continue
+            here, there = np.split(rows, [VIEWS // 2 if split is None else split])
+            if split is None:
+                cmap.partial_fit(walk.views[here], walk.odours[here], jump=True)
+                cmap.partial_fit(walk.views[there], walk.odours[there], jump=True)
+            else:
+                cmap.fork().save(folder / stage)
+                away = CognitiveMap.load(folder / stage)
+                cmap.partial_fit(walk.views[here], walk.odours[here], jump=True)
+                away.partial_fit(walk.views[there], walk.odours[there], jump=True)
+                assert cmap.merge(away) is cmap
+    return cmap
+
+
+def test_two_explorers_are_as_good_as_one(camera: Camera, tmp_path: Path) -> None:
+    walk = explore(Arena.load("open_field"), Brownian(), camera, views=VIEWS, seed=1)
+    whole, merged = (grown(walk, split=split, folder=tmp_path) for split in (None, VIEWS // 2))
+    for name, scale in {"odour": 1, "place": 20, "heading": 20, "phase": 1, "position": 1}.items():
+        one, other = (getattr(each.perceive(walk.views), name) for each in (whole, merged))
+        np.testing.assert_allclose(other, one, atol=1e-5 * scale, rtol=1e-5, err_msg=name)
+    assert whole.trusted_ == merged.trusted_
+
+
+def test_a_grown_map_goes_on_with_what_others_see(walk: Recording, cmap: CognitiveMap) -> None:
+    alone, away = deepcopy(cmap), cmap.fork()
+    alone.partial_fit(walk.views[:600], walk.odours[:600])
+    away.partial_fit(walk.views[:600], walk.odours[:600])
+    joined = deepcopy(cmap).merge(away)
+    for name in ("place", "heading"):
+        one, other = (getattr(each.perceive(walk.views[:300]), name) for each in (alone, joined))
+        np.testing.assert_allclose(other, one, atol=2e-4)
+    with pytest.raises(CogmapError, match="learnt nothing"):
+        deepcopy(cmap).merge(CognitiveMap())
+    with pytest.raises(CogmapError, match="learnt nothing"):
+        CognitiveMap().fork()

@@ -1,0 +1,73 @@
+"""Every notebook is run from its first cell to its last, with sizes of its parameter cell made small."""
+
+import re
+from pathlib import Path
+from typing import Any
+
+import nbformat
+import pytest
+from nbclient import NotebookClient
+
+ROOT = Path(__file__).parents[2]
+NOTEBOOKS = sorted((ROOT / "notebooks").glob("*.ipynb"))
+SMALL: dict[str, dict[str, Any]] = {
+    "1_a_spin_is_a_ring": {"VIEWS": 300},
+    "2_a_corridor_is_a_cylinder": {"VIEWS": 500},
+    "3_a_room_is_a_solid_torus": {"VIEWS": 400},
+    "4_where_am_i": {"VIEWS": 1500},
+    "5_cells_from_sight_and_smell": {"VIEWS": 800, "CHARTS": 250},
+    "7_the_homology_of_emergent_maps": {"VIEWS": 800, "CHARTS": 250, "LANDMARKS": (100, 50)},
+    "8_your_own_arena": {"MINUTES": 5, "CHARTS": 250},
+}
+QUICK = ("1_a_spin_is_a_ring", "4_where_am_i", "8_your_own_arena")
+
+
+def read(path: Path) -> Any:
+    return nbformat.read(path, 4)
+
+
+def test_each_has_small_sizes() -> None:
+    assert [path.stem for path in NOTEBOOKS] == sorted(SMALL)
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.full]) for name in SMALL]
+)
+def test_it_runs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    notebook = read(ROOT / "notebooks" / f"{name}.ipynb")
+    (parameters,) = [cell for cell in notebook.cells if "parameters" in cell.metadata.get("tags", [])]
+    for key, value in SMALL[name].items():
+        parameters.source, count = re.subn(
+            rf"^{key} = .*$", f"{key} = {value}", parameters.source, flags=re.MULTILINE
+        )
+        assert count == 1
+    drawn = [figures(cell) for cell in notebook.cells]
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+    NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    assert [figures(cell) for cell in notebook.cells] == drawn
+    assert sum(drawn) >= 4
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_it_reads_well(path: Path) -> None:
+    notebook = read(path)
+    first, last = notebook.cells[0], notebook.cells[-1]
+    assert re.fullmatch(r"# [^\n]+\n\n\*\*.*\?\*\*", first.source, re.DOTALL)
+    assert last.source.split("\n\n- ")[0].endswith("## What to try next")
+    codes = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    assert codes[0].metadata["tags"] == ["parameters"]
+    assert path.stat().st_size < 1_000_000
+    for number, cell in enumerate(codes, 1):
+        assert len(cell.source.splitlines()) <= 25
+        assert cell.execution_count == number
+        assert not any(output.output_type == "error" for output in cell.outputs)
+        for module in re.findall(r"^(?:from|import) (\S+)", cell.source, re.MULTILINE):
+            assert module in {"arena", "cogmap", "numpy", "pathlib", "tempfile"}
+    text = path.read_text(encoding="utf-8")
+    assert not re.search(r"stderr|/tmp/|/root/|/home/|/work/", text)
+
+
+def figures(cell: Any) -> int:
+    return sum("image/png" in output.get("data", {}) for output in cell.get("outputs", []))
