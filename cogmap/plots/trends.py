@@ -11,7 +11,7 @@ import pandas as pd
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from pandas.api.types import is_bool_dtype, is_numeric_dtype
 from scipy.stats import t
 
@@ -198,14 +198,16 @@ def _scale(axes: Axes, axis: _Axis) -> None:
         axes.set_xticks([float(value) for value in axis.levels], [_short(value) for value in axis.levels])
         axes.xaxis.set_minor_locator(NullLocator())
     elif axis.is_log:
+        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.xaxis.set_minor_locator(NullLocator())
 
 
 def _called(name: str, labels: Mapping[str, str]) -> str:
     if name in labels:
         return labels[name]
-    unit = next((unit for end, unit in _UNITS.items() if name.endswith(end)), "")
-    plain = name.replace("_", " ").removesuffix(f" {unit}").removesuffix(" deg").removesuffix(" rad")
+    end, unit = next(((end, unit) for end, unit in _UNITS.items() if name.endswith(end)), ("", ""))
+    plain = (name.removesuffix(end) if end.startswith("_") else name).replace("_", " ")
     return f"{plain} ({unit})" if unit else plain
 
 

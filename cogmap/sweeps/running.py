@@ -137,7 +137,8 @@ def _client(address: str) -> Iterator[Any]:
         from distributed import Client  # noqa: PLC0415  part of an extra
     except ImportError:
         raise CogmapError("a scheduler needs Dask; `pip install 'cogmap[cluster]'`") from None
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for part in ("distributed", "distributed.client"):
+        logging.getLogger(part).setLevel(logging.CRITICAL)  # what goes wrong is said in one sentence
     try:
         client = Client(address, timeout=PATIENCE, set_as_default=False)
     except (OSError, ValueError):

@@ -81,3 +81,14 @@ def test_a_sheet_of_many_parameters(table: pd.DataFrame) -> None:
     wide = table.assign(**{f"p{number}": table["nose.noise"] + number for number in range(3)})
     figure = plot_trend(wide, "error_deg", ["arena", "nose.noise", "p0", "p1", "p2"])
     assert sum(axes.axison for axes in figure.axes) == 5
+
+
+def test_a_log_scale_of_many_values_has_plain_ticks(table: pd.DataFrame) -> None:
+    many = table.assign(area_m2=table["error_deg"], **{"nose.noise": np.geomspace(0.02, 0.5, 24)})
+    figure = plot_trend(many, "area_m2", ["nose.noise"], logarithmic={"nose.noise"}, joined=False)
+    figure.draw_without_rendering()
+    (axes,) = figure.axes
+    shown = {tick.get_text() for tick in axes.get_xticklabels()}
+    assert {"0.02", "0.05", "0.1", "0.2", "0.5"} <= shown
+    assert not axes.get_xticks(minor=True).size
+    assert axes.get_ylabel() == "area (m²)"
