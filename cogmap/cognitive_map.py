@@ -42,6 +42,9 @@ class CognitiveMap:
         Local charts of the view manifold; about a fifth as many as views.
     components
         Principal components of the view code.
+    most_charts
+        How many charts it may come to when their number is doubled, again and again, until they agree; None
+        adds none.
     place_cells, heading_cells
         Sizes of the two populations.
     epoch
@@ -74,6 +77,7 @@ class CognitiveMap:
         charts: int = 3000,
         components: int = 60,
         *,
+        most_charts: int | None = None,
         place_cells: int = 150,
         heading_cells: int = 60,
         epoch: int = 17_000,
@@ -81,6 +85,7 @@ class CognitiveMap:
     ) -> None:
         self.charts = charts
         self.components = components
+        self.most_charts = most_charts
         self.place_cells = place_cells
         self.heading_cells = heading_cells
         self.epoch = epoch
@@ -113,16 +118,18 @@ class CognitiveMap:
             started = time.perf_counter()
             strips = torch.cat([strip for _, strip in self._strips(views)])
             self.seconds_["retina"] = time.perf_counter() - started
-            for stage, epochs in EPOCHS.items():
-                bar.set_description(stage)
+            count = views.shape[0]
+            while int(self._layers.age) < sum(EPOCHS.values()) * count:
                 started = time.perf_counter()
-                for _ in range(epochs):
-                    count = views.shape[0]
-                    epoch = np.arange(count) if stage == IN_ORDER else order.permutation(count)
-                    for rows in torch.from_numpy(epoch).split(BATCH):
-                        self._layers.learn(strips[rows], smells[rows])
-                    bar.update()
-                self.seconds_[stage] = time.perf_counter() - started
+                self._layers.mature()
+                stage = self._layers.stage
+                bar.set_description(stage)
+                epoch = np.arange(count) if stage == IN_ORDER else order.permutation(count)
+                for rows in torch.from_numpy(epoch).split(BATCH):
+                    self._layers.learn(strips[rows], smells[rows])
+                self.seconds_[stage] = self.seconds_.get(stage, 0.0) + time.perf_counter() - started
+                bar.n = int(self._layers.age) // count
+                bar.refresh()
         return self
 
     def partial_fit(self, views: Any, odours: ArrayLike, *, jump: bool = False) -> CognitiveMap:
@@ -259,7 +266,12 @@ class CognitiveMap:
             When something is at the path already, or it cannot be written.
         """
         self._check_grown()
-        learnt = {"view_shape": self.view_shape_, "odorants": self.odorants_, "epoch": self._layers.epoch}
+        learnt = {
+            "view_shape": self.view_shape_,
+            "odorants": self.odorants_,
+            "epoch": self._layers.epoch,
+            "charts": len(self._layers.charts),
+        }
         write_map(Path(path), self._layers.state_dict(), self._settings(), learnt)
 
     @classmethod
@@ -274,23 +286,33 @@ class CognitiveMap:
         weights, settings, learnt = read_map(Path(path))
         try:
             loaded = cls(**settings)
-            loaded._begin(tuple(learnt["view_shape"]), learnt["odorants"], epoch=learnt["epoch"])
+            loaded._begin(
+                tuple(learnt["view_shape"]),
+                learnt["odorants"],
+                epoch=learnt["epoch"],
+                charts=learnt.get("charts"),
+            )
             loaded._layers.load_state_dict(weights)
         except (KeyError, TypeError, RuntimeError) as error:
             raise CogmapError(f"{path} does not hold a whole map: {error}") from None
         return loaded
 
-    def _settings(self) -> dict[str, int]:
+    def _settings(self) -> dict[str, Any]:
         return {
             "charts": self.charts,
             "components": self.components,
+            "most_charts": self.most_charts,
             "place_cells": self.place_cells,
             "heading_cells": self.heading_cells,
             "epoch": self.epoch,
             "seed": self.seed,
         }
 
-    def _begin(self, view_shape: tuple[int, ...], odorants: int, *, epoch: int) -> None:
+    def _begin(
+        self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, charts: int | None = None
+    ) -> None:
+        first = checked_count("charts", self.charts)
+        most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
         self._retina = Retina(*view_shape[:2])
         self.view_shape_, self.odorants_ = view_shape, odorants
         self.seconds_: dict[str, float] = {}
@@ -298,7 +320,8 @@ class CognitiveMap:
             self._layers = Layers(
                 self._retina.features,
                 odorants,
-                charts=checked_count("charts", self.charts),
+                charts=first if charts is None else charts,
+                most_charts=most,
                 components=checked_count("components", self.components, 3),
                 place_cells=checked_count("place_cells", self.place_cells),
                 heading_cells=checked_count("heading_cells", self.heading_cells),

@@ -9,6 +9,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from neurons.afferents import Afferents
 from neurons.atlas import Atlas
 from neurons.charts import Charts
 from neurons.errors import NeuronsError
@@ -51,6 +52,9 @@ class Layers(nn.Module):
         Inputs.
     charts, components, place_cells, heading_cells
         Sizes.
+    most_charts
+        Up to how many charts are added, while the guard says that the atlas is too coarse: their number is
+        doubled, and all that follows the code is learnt again.
     epoch
         Views in an epoch, the unit of the critical periods.
     generator
@@ -67,6 +71,7 @@ class Layers(nn.Module):
         odorants: int,
         *,
         charts: int,
+        most_charts: int,
         components: int,
         place_cells: int,
         heading_cells: int,
@@ -75,6 +80,7 @@ class Layers(nn.Module):
     ) -> None:
         super().__init__()
         self.epoch = epoch
+        self.most_charts = most_charts
         self.code = Sanger(features, components, generator=generator)
         self.charts = Charts(charts, components, generator=generator)
         self.olfaction = Olfaction(charts, odorants)
@@ -131,6 +137,10 @@ class Layers(nn.Module):
         """Say why this map cannot be trusted, or nothing when it can."""
         if self.stage != STAGES[-1]:
             return f"it is still in its {self.stage!r} stage; show it more views"
+        return self._doubt()
+
+    def _doubt(self) -> str:
+        """Say in what the charts do not agree, or nothing when they do."""
         signs, phases = self.agreement.tolist()
         if not math.isfinite(phases):
             return "no loop of its charts closes after a turn; use more charts or more views"
@@ -165,6 +175,8 @@ class Layers(nn.Module):
                 self.recall.spacing = Atlas.of(self.charts.centres).spacing
             elif entered == "cells":
                 self._orient()
+                if self._doubt() and len(self.charts) < self.most_charts:
+                    self._add_charts()
             elif entered == "afferents":
                 self.gauge.settle()
                 edges = Atlas.of(self.charts.centres).edges
@@ -179,3 +191,16 @@ class Layers(nn.Module):
             compass = synchronise(self.charts.centres, axes, atlas)
             self.agreement = torch.tensor([compass.sign_agreement, compass.eigenvalue])
         self.recall.settle(atlas, compass, intercepts, jacobians)
+
+    def _add_charts(self) -> None:
+        """Double the charts where they lie farthest apart, and go back to the stage in which they learn."""
+        count, odorants = len(self.charts), self.place.centres.shape[1]
+        self.charts.grow(Atlas.of(self.charts.centres).edges, min(count, self.most_charts - count))
+        count = len(self.charts)
+        self.olfaction = Olfaction(count, odorants)
+        self.recall = Recall(count, self.charts.centres.shape[1], odorants)
+        self.place = PlaceCells(len(self.place.centres), count, odorants)
+        self.heading.afferents = Afferents(count, len(self.heading.preferred))
+        self.agreement.fill_(torch.nan)
+        self.matured.fill_(STAGES.index("charts"))
+        self.age.fill_(self.begins("charts"))

@@ -86,6 +86,18 @@ class Charts(nn.Module):
         if len(rest):
             self._compete(rest, winners=winners, memory=memory)
 
+    def grow(self, overlapping: Int[Tensor, "edges 2"], count: int) -> None:
+        """Add so many charts, halfway between those of the given pairs that lie farthest apart."""
+        one, other = overlapping.T
+        length = (self.centres[one] - self.centres[other]).norm(dim=1)
+        longest = length.topk(min(count, len(length))).indices
+        one, other = one[longest], other[longest]
+        self.centres = torch.cat([self.centres, (self.centres[one] + self.centres[other]) / 2])
+        self.tangents = torch.cat([self.tangents, self.tangents[one]])
+        self.mass = torch.cat([self.mass, torch.zeros(len(longest))])
+        self.variances = torch.cat([self.variances, torch.zeros(len(longest), DIMENSIONS)])
+        self.placed.fill_(len(self.centres))
+
     def _compete(self, codes: Float[Tensor, "views components"], *, winners: int, memory: float) -> None:
         chart = self.excite(codes, winners).chart
         h = torch.exp(-2.0 * torch.arange(chart.shape[1]) / chart.shape[1])

@@ -151,6 +151,23 @@ def test_a_coarse_map_says_so(walk: Recording) -> None:
         coarse.perceive(walk.views[:5])
 
 
+def test_a_coarse_map_adds_charts_until_they_agree(walk: Recording, tmp_path: Path) -> None:
+    grown = CognitiveMap(charts=100, components=40, most_charts=1000).fit(walk.views, walk.odours)
+    assert grown.trusted_, grown.reason_
+    assert len(grown._layers.charts) in {200, 400, 800}
+    grown.save(tmp_path / "map")
+    loaded = CognitiveMap.load(tmp_path / "map")
+    assert loaded.most_charts == 1000
+    assert_same(loaded.perceive(walk.views[:100]), grown.perceive(walk.views[:100]))
+
+
+def test_charts_that_agree_are_left_alone(walk: Recording, cmap: CognitiveMap) -> None:
+    free = CognitiveMap(charts=cmap.charts, components=cmap.components, most_charts=3000)
+    assert same(free.fit(walk.views, walk.odours), cmap)
+    with pytest.raises(CogmapError, match="most_charts is 799; give a whole number of at least 800"):
+        CognitiveMap(charts=800, most_charts=799).fit(walk.views, walk.odours)
+
+
 def test_an_unfinished_map_says_so(walk: Recording) -> None:
     young = CognitiveMap(charts=300, epoch=1500).partial_fit(walk.views[:500], walk.odours[:500])
     assert not young.trusted_

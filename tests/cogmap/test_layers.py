@@ -12,6 +12,7 @@ def layers() -> Layers:
         30,
         3,
         charts=60,
+        most_charts=60,
         components=8,
         place_cells=10,
         heading_cells=6,
@@ -79,3 +80,37 @@ def test_complaints(layers: Layers, signs: float, phases: float, said: str) -> N
     complaint = layers.complain()
     assert said in complaint
     assert bool(complaint) == bool(said)
+
+
+@pytest.mark.parametrize(("most", "charts"), [(100, 100), (500, 120), (60, 60)])
+@pytest.mark.parametrize("better", [False, True])
+def test_charts_are_added_while_they_do_not_agree(
+    layers: Layers, monkeypatch: pytest.MonkeyPatch, most: int, charts: int, *, better: bool
+) -> None:
+    found = torch.tensor([1.0, 0.9999 if better else 0.99])
+    orient = Layers._orient
+
+    def disagree(self: Layers) -> None:
+        orient(self)
+        self.agreement = found.clone()
+
+    monkeypatch.setattr(Layers, "_orient", disagree)
+    layers.most_charts = most
+    while layers.stage != "cells":
+        layers.learn(*stream(50, int(layers.age)))
+    grown = layers.age.clone()
+    layers.learn(*stream(50, 1))
+    if better or charts == 60:
+        assert len(layers.charts) == 60
+        assert (layers.stage, int(layers.age)) == ("cells", int(grown) + 50)
+        return
+    assert len(layers.charts) == charts
+    assert (layers.stage, int(layers.age)) == ("charts", layers.begins("charts") + 50)
+    assert STAGES[int(layers.matured)] == "charts"
+    assert layers.agreement.isnan().all()
+    found[1] = 0.9999
+    while layers.age < layers.begins("afferents") + 100:
+        layers.learn(*stream(50, int(layers.age)))
+    assert len(layers.charts) == charts
+    assert layers.complain() == ""
+    assert {len(layers.place.afferents.weights), len(layers.heading.afferents.weights)} == {charts}

@@ -33,7 +33,14 @@ def learn(layers: Layers, views: Views) -> None:
 
 
 def young(**sizes: int) -> Layers:
-    usual = {"charts": 60, "components": 8, "place_cells": 10, "heading_cells": 6, "epoch": EPOCH}
+    usual = {
+        "charts": 60,
+        "most_charts": 60,
+        "components": 8,
+        "place_cells": 10,
+        "heading_cells": 6,
+        "epoch": EPOCH,
+    }
     return Layers(30, 3, **{**usual, **sizes}, generator=torch.Generator().manual_seed(0))
 
 

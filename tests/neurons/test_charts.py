@@ -166,3 +166,24 @@ def test_coordinates_are_tangents_times_residual(charts: Charts, views: Tensor) 
         for rank, k in enumerate(chart[view].tolist()):
             direct = charts.tangents[k].numpy() @ (codes[view] - charts.centres[k]).numpy()
             np.testing.assert_allclose(coordinates[view, rank], direct, atol=1e-5)
+
+
+def test_grows_halfway_along_the_longest_overlaps() -> None:
+    charts = Charts(4, 5, generator=torch.Generator().manual_seed(0))
+    charts.centres = torch.tensor([[0.0], [1.0], [4.0], [14.0]]) * torch.eye(5)[1]
+    before, overlapping = charts.state_dict(), torch.tensor([[0, 1], [1, 2], [2, 3], [0, 2]])
+    before = {name: value.clone() for name, value in before.items()}
+    charts.grow(overlapping, 2)
+    assert charts.centres[4:, 1].tolist() == [9.0, 2.0]
+    assert charts.tangents[4:].equal(before["tangents"][[2, 0]])
+    assert not charts.mass[4:].any()
+    assert not charts.variances[4:].any()
+    assert charts.placed == len(charts) == 6
+    for name in ("centres", "tangents", "mass", "variances"):
+        assert charts.get_buffer(name)[:4].equal(before[name])
+    charts.partial_fit(
+        torch.randn(50, 5, generator=torch.Generator().manual_seed(1)), winners=6, memory=100.0
+    )
+    assert charts.mass.all()
+    charts.grow(overlapping, 9)
+    assert len(charts) == 10
