@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from arena import Brownian, Camera, Recording
-from cogmap.experiments.populations import MOST_CHARTS, Ground, grow_map, perceive
+from cogmap.experiments.populations import MOST_CHARTS, Ground, grow_map, perceive, trust
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.plots import plot_cases
@@ -70,6 +70,5 @@ def _learn(setting: Setting, walk: Recording, fresh: Recording, charts: int) -> 
     return {
         **ground.measure(asked.place).place_figures,
         **score(asked, ground.poses, train=(known, ground.known), reachable=ground.reachable),
-        "trusted": cmap.trusted_,
-        "reason": cmap.reason_,
+        **trust(cmap),
     }

@@ -11,7 +11,7 @@ from jaxtyping import Float
 from arena import Arena, Brownian, Camera
 from cogmap.cells import RateMaps, bin_edges, mean_vectors, rate_maps, tuning_curves
 from cogmap.errors import CogmapError
-from cogmap.experiments.populations import grow_map, map_correlations, perceive
+from cogmap.experiments.populations import grow_map, map_correlations, perceive, trust
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.plots import Tuning, plot_examples
@@ -72,7 +72,7 @@ def cue_rotation(setting: Setting) -> Result:
             },
             **{f"correlation_{name}": float(found) for name, found in table.median().items()},
             **({} if np.isnan(shift).any() else figures),
-            "trusted": cmap.trusted_,
+            **trust(cmap),
         },
         tables={"place_cells": table, "heading_cells": pd.DataFrame({"shift_deg": shift})},
         figures={

@@ -12,6 +12,7 @@ from cogmap.experiments.populations import (
     competing_cells,
     grow_map,
     perceive,
+    trust,
 )
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import FRESH, Setting, poses_of
@@ -53,7 +54,7 @@ def directionality(setting: Setting) -> Result:
         metrics[name] = {
             kind: {**one.place_figures, "directional": _share(one)} for kind, one in found.items()
         }
-        metrics[name]["trusted"] = cmap.trusted_
+        metrics[name] |= trust(cmap)
         label = name.replace("_", " ")
         cells |= {f"{label}, {kind.replace('_', ' ')}": one for kind, one in found.items()}
         drawn[name] = {

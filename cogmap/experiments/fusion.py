@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from arena import Brownian, Camera
-from cogmap.experiments.populations import Ground, as_one_table, competing_cells, grow_map, perceive
+from cogmap.experiments.populations import Ground, as_one_table, competing_cells, grow_map, perceive, trust
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.plots import plot_cell_types, plot_examples
@@ -53,8 +53,7 @@ def fusion(setting: Setting) -> Result:
                 **cells["fused, heading"].heading_figures,
                 **score(asked, ground.poses, train=(known, ground.known), reachable=ground.reachable),
                 **{f"nose_{key}": value for key, value in nose.items()},
-                "trusted": cmap.trusted_,
-                "reason": cmap.reason_,
+                **trust(cmap),
                 "metric_reason": cmap.metric_reason_,
                 "seconds": {stage: round(spent, 3) for stage, spent in cmap.seconds_.items()},
             },

@@ -14,7 +14,7 @@ from sklearn.metrics import pairwise_distances_argmin
 from arena import Brownian, Camera
 from cogmap.cells.ratios import ratio
 from cogmap.cognitive_map import CognitiveMap
-from cogmap.experiments.populations import Ground, as_one_table, grow_map, perceive
+from cogmap.experiments.populations import Ground, as_one_table, grow_map, perceive, trust
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.experiments.surgery import afferent_weights, newborn, silenced, weights_of
@@ -88,7 +88,7 @@ def neurons(setting: Setting) -> Result:
     tables = {"growth": pd.DataFrame(growth), "silencing": pd.DataFrame(silencing)}
     return Result(
         metrics={
-            "trusted": cmap.trusted_,
+            **trust(cmap),
             "driven": _figures(ground, driven),
             "direct": _figures(ground, direct),
             "agreement": {

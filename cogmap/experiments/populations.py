@@ -52,6 +52,11 @@ def perceive(cmap: CognitiveMap, views: Any) -> Activity:
         return cmap.perceive(views)
 
 
+def trust(cmap: CognitiveMap) -> dict[str, Any]:
+    """Whether a map is to be trusted, and why not."""
+    return {"trusted": cmap.trusted_, "reason": cmap.reason_}
+
+
 def competing_cells(
     learnt: Float[np.ndarray, "train inputs"],
     *asked: Float[np.ndarray, "_ inputs"],

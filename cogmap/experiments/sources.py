@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from arena import Arena, Brownian, Camera, Nose, Recording
-from cogmap.experiments.populations import Ground, grow_map, perceive
+from cogmap.experiments.populations import Ground, grow_map, perceive, trust
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import FRESH, FRESH_SEED, Setting, poses_of
 from cogmap.plots import plot_cases
@@ -71,5 +71,5 @@ def _learn(
         **{f"nose_{key}": value for key, value in ground.position(*map(np.log, smells)).items()},
         **{f"place_{key}": value for key, value in ground.position(known.place, asked.place).items()},
         "single_field": float((place.table["fields"] == 1).mean()),
-        "trusted": cmap.trusted_,
+        **trust(cmap),
     }

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from arena import Brownian, Camera, Motion, Track
-from cogmap.experiments.populations import Ground, Measured, as_one_table, grow_map, perceive
+from cogmap.experiments.populations import Ground, Measured, as_one_table, grow_map, perceive, trust
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import FRESH, Setting, poses_of
 from cogmap.experiments.slow_features import slow_cells
@@ -84,8 +84,7 @@ def _learn(setting: Setting, way: Way) -> tuple[dict[str, Any], dict[str, Measur
             **found["fused place"].place_figures,
             **found["fused heading"].heading_figures,
             **score(after, poses, train=(before, known)),
-            "trusted": cmap.trusted_,
-            "reason": cmap.reason_,
+            **trust(cmap),
         },
     }
     return metrics, found
