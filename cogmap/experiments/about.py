@@ -22,7 +22,7 @@ PACKAGES = (
 """Those whose version may change a figure."""
 
 
-def write_about(folder: Path, words: tuple[str, ...], room: Arena, **options: Any) -> None:
+def write_about(folder: Path, words: tuple[str, ...], room: Arena | None, **options: Any) -> None:
     """Write `about.json`, and the room where it is none of the gallery; no times, no names of machines.
 
     Parameters
@@ -32,28 +32,33 @@ def write_about(folder: Path, words: tuple[str, ...], room: Arena, **options: An
     words
         Of the command: `("demo",)` or `("experiment", "rotation")`.
     room
-        Where it took place.
+        Where it took place; None where the command takes no room.
     options
         Those of the command. What the command line cannot say, being neither number nor text, is kept as
         `different`.
     """
-    name = room.name
-    if name not in gallery() or Arena.load(name) != room:
-        (folder / ROOM).write_text(room.to_toml(), encoding="utf-8")
-        name = ROOM
     said = {key: value for key, value in options.items() if isinstance(value, int | float | str)}
-    command = [
-        *words,
-        "--arena",
-        name,
-        *(word for key, value in said.items() for word in (f"--{key}", str(value))),
-    ]
+    command = [*words, *_where(folder, room), *(word for item in said.items() for word in _option(*item))]
     about = {
         "command": shlex.join(["cogmap", *command]),
         "different": {key: repr(value) for key, value in options.items() if key not in said},
         "versions": versions(),
     }
     (folder / ABOUT).write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
+
+
+def _where(folder: Path, room: Arena | None) -> tuple[str, ...]:
+    """Name the room, and keep it where its name does not tell it."""
+    if room is None:
+        return ()
+    if room.name in gallery() and Arena.load(room.name) == room:
+        return _option("arena", room.name)
+    (folder / ROOM).write_text(room.to_toml(), encoding="utf-8")
+    return _option("arena", ROOM)
+
+
+def _option(name: str, value: object) -> tuple[str, str]:
+    return f"--{name}", str(value)
 
 
 def versions() -> Mapping[str, str]:

@@ -145,5 +145,6 @@ def experiment(
         result = Result({**about, **found.metrics}, found.tables, found.figures)
         if folder is not None:
             result.write(folder)
-            write_about(folder, ("experiment", name), room, views=views, seed=seed, **different)
+            where = room if chosen.elsewhere else None
+            write_about(folder, ("experiment", name), where, views=views, seed=seed, **different)
     return result

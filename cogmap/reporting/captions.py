@@ -2,11 +2,14 @@
 
 CAPTIONS = {
     "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
+    "cells": "What each cell tells of position and of heading, by population",
     "compass": "Learnt against true heading, the same colour for the same direction",
     "confusion": "Where the nearest view was taken, turned half round or not",
     "cylinder": "Coordinates of the views on their manifold, coloured by heading and by place along the way",
     "distances": "Distance along the manifold against distance between poses",
     "errors": "How far from the true pose fresh views are placed",
+    "examples": "Six cells of each population: rate maps, and rate by heading",
+    "goals": "The views at each goal, as strokes that point where the body looks",
     "heading": "Heading read off the views against the true one",
     "heading_cells": "Tuning curves of head-direction cells, rate against heading",
     "likeness": "Which views each measure of likeness takes for the same",
@@ -17,6 +20,7 @@ CAPTIONS = {
     "prediction": "Heading predicted by a small network against the true one",
     "ring": "The first two coordinates of the views of a spin, coloured by heading",
     "room": "The room from above, with the way through it",
+    "sources": "What the cells tell of place with ever more sources of smell",
     "torus": "The first three coordinates of the views, coloured by heading and by place",
     "torus_fourth": "The first, second and fourth coordinate of the views, coloured by heading and by place",
     "translation": "Height on the cylinder against place along the way",

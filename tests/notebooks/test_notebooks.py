@@ -19,7 +19,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "7_the_homology_of_emergent_maps": {"VIEWS": 800, "CHARTS": 250, "LANDMARKS": (100, 50)},
     "8_your_own_arena": {"MINUTES": 5, "CHARTS": 250},
 }
-QUICK = ("1_a_spin_is_a_ring", "4_where_am_i", "8_your_own_arena")
+QUICK = ("1_a_spin_is_a_ring", "8_your_own_arena")
 
 
 def read(path: Path) -> Any:
@@ -60,7 +60,7 @@ def test_it_reads_well(path: Path) -> None:
     assert codes[0].metadata["tags"] == ["parameters"]
     assert path.stat().st_size < 1_000_000
     for number, cell in enumerate(codes, 1):
-        assert len(cell.source.splitlines()) <= 25
+        assert len(cell.source.splitlines()) <= 30
         assert cell.execution_count == number
         assert not any(output.output_type == "error" for output in cell.outputs)
         for module in re.findall(r"^(?:from|import) (\S+)", cell.source, re.MULTILINE):

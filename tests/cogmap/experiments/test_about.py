@@ -4,6 +4,7 @@ import shlex
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from arena import Arena, Nose
 from cogmap import cli
@@ -16,13 +17,16 @@ def written(folder: Path) -> dict:
     return json.loads((folder / "about.json").read_text(encoding="utf-8"))
 
 
-def test_the_command_repeats_the_result(tmp_path: Path, monkeypatch) -> None:
-    quick = Experiment(lambda setting: Result({"room": setting.room.to_toml()}), "furnished", 4000)
+@pytest.mark.parametrize("where", ["--arena open_field ", ""])
+def test_the_command_repeats_the_result(where: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    quick = Experiment(
+        lambda setting: Result({"room": setting.room.to_toml()}), "open_field", 4000, elsewhere=bool(where)
+    )
     monkeypatch.setitem(EXPERIMENTS, "cyclic", quick)
     first, second = tmp_path / "first", tmp_path / "second"
-    experiment("cyclic", first, views=200, seed=3, room=Arena.load("open_field"))
+    experiment("cyclic", first, views=200, seed=3)
     command = shlex.split(written(first)["command"])
-    assert " ".join(command) == "cogmap experiment cyclic --arena open_field --views 200 --seed 3"
+    assert " ".join(command) == f"cogmap experiment cyclic {where}--views 200 --seed 3"
     monkeypatch.setattr("sys.argv", [*command, "--out", str(second)])
     cli.main()
     for name in ("metrics.json", "about.json"):
