@@ -21,8 +21,6 @@ from cogmap.tables import as_rows, shown
 
 SWEPT = ("table.parquet", "table.csv")
 """The table of a sweep, in the order in which they are tried."""
-PLAN = "sweep.json"
-"""What a sweep varies."""
 LONGEST = 500
 """Rows of a sweep's table that are shown."""
 PARAMETERS = ("experiment", "arena", "views", "charts", "seed")
@@ -65,7 +63,7 @@ class Contents:
     pictures: list[Picture]
     tables: list[Table]
     files: dict[str, str]
-    """Text of rooms and specifications, by the name of the file."""
+    """Text of rooms and plans, by the name of the file."""
     command: str
     """That repeats it; empty when nobody wrote it down."""
     versions: dict[str, str]
@@ -102,9 +100,7 @@ def read_contents(folder: Path) -> Contents:
             *([] if table is None else [_read(table, _whole)]),
             *(_read(path, _summary) for path in behind),
         ],
-        files={
-            path.name: _read(path, _text) for path in sorted([*folder.glob("*.toml"), *folder.glob(PLAN)])
-        },
+        files={path.name: _read(path, _text) for path in sorted(folder.glob("*.toml"))},
         command=about.get("command", ""),
         versions=about.get("versions", {}),
     )

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+import tomli_w
 from pydantic import Field, ValidationError
 
 from arena.parts import Part
@@ -88,6 +89,10 @@ class Plan(Part):
             return cls.parse(text)
         except CogmapError as error:
             raise CogmapError(f"{path}: {error}") from None
+
+    def to_toml(self) -> str:
+        """Write the plan as TOML text, which `parse` reads back."""
+        return tomli_w.dumps(self.model_dump(mode="json", by_alias=True, exclude_defaults=True))
 
     @property
     def varied(self) -> tuple[str, ...]:

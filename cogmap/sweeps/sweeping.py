@@ -9,6 +9,7 @@ import pandas as pd
 from tqdm import tqdm
 
 from cogmap.errors import CogmapError
+from cogmap.experiments.about import write_about
 from cogmap.experiments.catalogue import EXPERIMENTS
 from cogmap.inputs import checked_count
 from cogmap.plots.trends import plot_trend, statistics_of
@@ -17,6 +18,9 @@ from cogmap.sweeps.plan import Plan
 from cogmap.sweeps.points import Point, points_of
 from cogmap.sweeps.running import Task, on_cluster, on_this_machine
 from cogmap.sweeps.table import table_of
+
+PLAN = "plan.toml"
+"""The plan, in the folder of its sweep."""
 
 
 def sweep(
@@ -40,8 +44,8 @@ def sweep(
     plan
         What is varied, as `Plan.load("sweep.toml")`.
     out
-        Folder for `table.csv`, `table.parquet`, `figures` and what is needed to go on. With a scheduler, all
-        workers must see it by this path.
+        Folder for `table.csv`, `table.parquet`, `figures`, the plan and what is needed to go on. With a
+        scheduler, all workers must see it by this path.
     workers
         Processes on this machine; as many as cores when None.
     scheduler
@@ -98,7 +102,7 @@ def _finished(ledger: Ledger, point: Point) -> Record:
 
 
 def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
-    """Write the table and its figures."""
+    """Write the table and its figures, and how to do it again."""
     with ledger.replacing(ledger.folder / "table.csv") as fresh:
         table.to_csv(fresh, index=False)
     with ledger.replacing(ledger.folder / "table.parquet") as fresh:
@@ -119,3 +123,5 @@ def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
             figure.savefig(fresh / f"{name}.png")
         shutil.rmtree(figures, ignore_errors=True)
         fresh.rename(figures)
+        (ledger.folder / PLAN).write_text(plan.to_toml(), encoding="utf-8")
+        write_about(ledger.folder, ("sweep", PLAN), None)

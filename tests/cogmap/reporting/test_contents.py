@@ -68,7 +68,7 @@ def test_without_a_record_of_the_command(folder: Path) -> None:
 def test_a_sweep(tmp_path: Path, ending: str) -> None:
     table = pd.DataFrame({"nose.noise": np.arange(LONGEST + 1) / 4, "error": [None, *["boom"] * LONGEST]})
     (table.to_csv if ending == "csv" else table.to_parquet)(tmp_path / f"table.{ending}", index=False)
-    (tmp_path / "sweep.json").write_text('{"views": 1}', "utf-8")
+    (tmp_path / "plan.toml").write_text("views = 1", "utf-8")
     (tmp_path / "figures").mkdir()
     figure = new_figure(2.0, 1.0)
     figure.subplots().plot([0, 1])
@@ -81,7 +81,7 @@ def test_a_sweep(tmp_path: Path, ending: str) -> None:
     assert shown.columns == ["nose.noise", "error"]
     assert shown.rows[:2] == [["0", "–"], ["0.25", "boom"]]
     assert len(shown.rows) == LONGEST
-    assert found.files == {"sweep.json": '{"views": 1}'}
+    assert found.files == {"plan.toml": "views = 1"}
     assert [(one.name, one.caption) for one in found.pictures] == [("figures/mean_rate", "Mean rate")]
 
 

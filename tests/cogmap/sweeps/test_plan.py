@@ -16,6 +16,8 @@ arena = ["furnished", "pillar"]
 "nose.noise" = [0.05, 0.1, 0.2]
 """
 
+EXAMPLES = sorted((Path(__file__).parents[3] / "examples" / "sweeps").glob("*.toml"))
+
 
 def shown(plan: Plan) -> list[dict[str, Any]]:
     return [{name: choice.shown for name, choice in point.items()} for point in plan.assignments()]
@@ -33,6 +35,12 @@ def test_a_grid_is_every_combination_in_order(tmp_path: Path) -> None:
         {"arena": "pillar", "nose.noise": 0.05},
     ]
     assert plan.logarithmic == {"nose.noise"}
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_written_and_read_it_is_the_same_plan(path: Path) -> None:
+    plan = Plan.load(path)
+    assert Plan.parse(plan.to_toml()) == plan
 
 
 def test_named_values_are_told_by_their_names() -> None:

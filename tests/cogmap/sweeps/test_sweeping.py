@@ -49,8 +49,13 @@ def test_a_table_with_a_row_for_each_point_and_seed(tmp_path: Path) -> None:
     assert read["smell"].tolist() == table["smell"].tolist()
     assert read.columns.tolist() == table.columns.tolist()
     assert {file.name for file in (tmp_path / "out").iterdir()} == {
-        "figures", "points", "sweep.json", "table.csv", "table.parquet"
+        "about.json", "figures", "plan.toml", "points", "sweep.json", "table.csv", "table.parquet"
     }  # fmt: skip
+    assert (
+        json.loads((tmp_path / "out" / "about.json").read_text("utf-8"))["command"]
+        == "cogmap sweep plan.toml"
+    )
+    assert Plan.load(tmp_path / "out" / "plan.toml") == PLAN
     assert {file.stem for file in (tmp_path / "out" / "figures").iterdir()} == {
         "smell", "by_charts.share", "by_charts.betti.1", "trusted"
     }  # fmt: skip
