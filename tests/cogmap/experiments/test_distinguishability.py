@@ -1,7 +1,7 @@
 import numpy as np
 
 from arena import Arena, Camera, Wall
-from cogmap.experiments.distinguishability import ROOMS, _apart, _codes, _opposite
+from cogmap.experiments.distinguishability import ROOMS, _apart, _opposite, retina_codes
 from cogmap.manifold import motion_distances
 
 CAMERA = Camera.panoramic()
@@ -36,7 +36,7 @@ def test_codes_are_principal_components_of_known_strips() -> None:
     room, rng = Arena.load("blue_wall"), np.random.default_rng(0)
     poses = np.column_stack([room.sample_free(80, 0.18, rng), rng.uniform(-np.pi, np.pi, 80)])
     views = CAMERA.render(room, poses)
-    known, asked = _codes(views, views[5:9], 0)
+    known, asked = retina_codes(views, views[5:9], 0)
     assert known.shape == (80, 60)
     np.testing.assert_allclose(asked, known[5:9], atol=1e-4)
     np.testing.assert_allclose(known.mean(axis=0), 0, atol=1e-4)

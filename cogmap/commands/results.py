@@ -1,0 +1,164 @@
+"""Commands that find something out, and the one that shows it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
+
+from arena import Arena
+from cogmap.commands.app import Json, Seed, app, tell
+from cogmap.experiments.catalogue import experiment
+from cogmap.experiments.demo import demo
+from cogmap.reporting import report
+from cogmap.sweeps import Plan, sweep
+
+
+@app.command(name="demo")
+def _demo(
+    *,
+    arena: str = "furnished",
+    views: int = 17_000,
+    charts: int | None = None,
+    seed: Seed = 0,
+    out: Path = Path("demo"),
+    as_json: Json = False,
+) -> None:
+    """Explore a room, learn from sight and smell, and show the cells that emerge.
+
+    Examples: `cogmap demo`; `cogmap demo --arena pillar --seed 1 --out pillar --json`.
+
+    Parameters
+    ----------
+    arena
+        A room of the gallery or a TOML file.
+    views
+        Views to learn from.
+    charts
+        Of the map; 3000 by default, a third of the views when these are few.
+    out
+        Folder for figures, map and metrics.
+    """
+    metrics = demo(
+        Arena.load(arena), out, views=views, charts=charts, seed=seed, progress=sys.stderr.isatty()
+    )
+    if not metrics["trusted"]:
+        sys.stderr.write(f"cogmap: this map is not to be trusted: {metrics['reason']}\n")
+    tell(metrics, as_json=as_json)
+
+
+@app.command(name="experiment")
+def _experiment(
+    name: str,
+    /,
+    *,
+    arena: str | None = None,
+    views: int | None = None,
+    seed: Seed = 0,
+    out: Path | None = None,
+    as_json: Json = False,
+) -> None:
+    """Run an experiment of the paper: a table of metrics, figures, and the data behind them.
+
+    On the manifold of views: rotation, cyclic, brownian, similarity, localisation, roadmap and
+    distinguishability. On the cells: fusion, walks, sources, acuity, darkness, cue_rotation, goals,
+    directionality and neurons. On the holes of all that a map knows: homology.
+
+    Examples: `cogmap experiment rotation`; `cogmap experiment brownian --views 4000 --seed 1 --out walk`;
+    `cogmap experiment fusion --arena pillar`; `cogmap experiment localisation --arena obstacles --json`.
+
+    Parameters
+    ----------
+    name
+        Of the experiment.
+    arena
+        A room of the gallery or a TOML file; the experiment's own by default.
+    views
+        To learn from; as many as in the paper by default.
+    out
+        Folder for metrics, figures and data; the name of the experiment by default.
+    """
+    result = experiment(
+        name,
+        Path(name) if out is None else out,
+        room=None if arena is None else Arena.load(arena),
+        views=views,
+        seed=seed,
+        progress=sys.stderr.isatty(),
+    )
+    tell(result.metrics, as_json=as_json)
+
+
+@app.command(name="sweep")
+def _sweep(
+    plan: Path,
+    /,
+    *,
+    out: Path,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    retry_failed: Annotated[bool, Parameter(negative="")] = False,
+    keep_walks: Annotated[bool, Parameter(negative="")] = False,
+    as_json: Json = False,
+) -> None:
+    """Do an experiment at many points; killed at any moment, the same command goes on.
+
+    Examples: `cogmap sweep sweep.toml --out swept`; `cogmap sweep sweep.toml --out swept --retry-failed`;
+    `cogmap sweep sweep.toml --out /shared/swept --scheduler tcp://10.0.0.1:8786 --json`.
+
+    Parameters
+    ----------
+    plan
+        TOML file that says what is varied.
+    out
+        Folder for the table and the figures; all workers of a scheduler must see it.
+    scheduler
+        Address of a Dask scheduler, on whose workers the points are done.
+    workers
+        Processes on this machine; as many as cores by default.
+    retry_failed
+        Do points that have failed once more.
+    keep_walks
+        Keep the recordings that points share.
+    """
+    table = sweep(
+        Plan.load(plan),
+        out,
+        workers=workers,
+        scheduler=scheduler,
+        retry_failed=retry_failed,
+        keep_walks=keep_walks,
+        progress=sys.stderr.isatty(),
+    )
+    failed = table[table["error"] != ""]
+    if len(failed):
+        sys.stderr.write(
+            f"cogmap: {len(failed)} of {len(table)} points failed, the first with {failed['error'].iloc[0]}; "
+            "--retry-failed does them again\n"
+        )
+    untrusted = int((~table["trusted"].fillna(value=True)).sum())
+    told = {
+        "table": str(out / "table.csv"),
+        "rows": len(table),
+        "failed": len(failed),
+        "untrusted": untrusted,
+    }
+    tell(told, as_json=as_json)
+
+
+@app.command(name="report")
+def _page(folder: Path, /, *, out: Path | None = None, as_json: Json = False) -> None:
+    """Show a result as one HTML page that needs nothing else: figures, tables, parameters, versions.
+
+    Examples: `cogmap report demo`; `cogmap report rotation --out spin.html`.
+
+    Parameters
+    ----------
+    folder
+        What `cogmap demo`, `cogmap experiment` or a sweep wrote.
+    out
+        The page; `report.html` in the folder by default. An earlier report there is replaced.
+    """
+    tell({"report": str(report(folder, out))}, as_json=as_json)

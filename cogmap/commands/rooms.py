@@ -1,0 +1,129 @@
+"""Commands about rooms and the ways through them."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Literal
+
+from cyclopts import Parameter
+
+from arena import Arena, Body, Camera, Nose, explore, gallery
+from arena.motions.catalogue import MOTIONS
+from cogmap.commands.app import Json, Seed, app, check_absent, save_figure, tell
+from cogmap.errors import CogmapError
+from cogmap.plots import plot_room, plot_sheet
+
+
+@app.command(name="arena")
+def _arena(
+    name: str | None = None,
+    /,
+    *,
+    out: Path | None = None,
+    sheet: Path | None = None,
+    schema: Annotated[bool, Parameter(negative="")] = False,
+    as_json: Json = False,
+) -> None:
+    """Show a room: what is in it, a picture of it from above, and how it looks from inside.
+
+    Examples: `cogmap arena pillar --out pillar.png --sheet views.png`; `cogmap arena my_room.toml --json`;
+    `cogmap arena --schema > arena.schema.json`.
+
+    Parameters
+    ----------
+    name
+        A room of the gallery or a TOML file.
+    out
+        PNG to write the picture from above to; it must not exist.
+    sheet
+        PNG to write perspective and panoramic views to; it must not exist.
+    schema
+        Print the JSON Schema of the TOML files instead.
+    """
+    if schema:
+        tell(Arena.json_schema(), as_json=True)
+        return
+    if name is None:
+        raise CogmapError(f"no room is given; choose one of {', '.join(gallery())} or give a TOML file")
+    room = Arena.load(name)
+    described = {
+        "arena": room.name,
+        "walls": len(room.walls),
+        "boxes": len(room.boxes),
+        "pillars": len(room.pillars),
+        "blocks": len(room.blocks),
+        "odour_sources": len(room.sources),
+        "free_area_m2": float(room.free_space(Body().radius).area),
+    }
+    for path, plot in ((out, plot_room), (sheet, plot_sheet)):
+        if path is not None:
+            check_absent(path)
+            save_figure(plot(room), path)
+    tell(described, as_json=as_json)
+
+
+@app.command(name="explore")
+def _explore(
+    arena: str,
+    /,
+    *,
+    out: Path,
+    motion: Literal["brownian", "rotation", "cyclic", "chemotaxis", "track", "replay"] = "brownian",
+    odorant: int | None = None,
+    path: Path | None = None,
+    fit: bool | None = None,
+    views: int | None = None,
+    camera: Literal["panoramic", "perspective"] = "panoramic",
+    width: int | None = None,
+    height: int | None = None,
+    noise: float = 0.1,
+    seed: Seed = 0,
+    as_json: Json = False,
+) -> None:
+    """Walk through a room and record what is seen and smelt; a killed exploration goes on when called again.
+
+    Examples: `cogmap explore furnished --out walk.zarr`; `cogmap explore pillar --views 5000 --out p.zarr`;
+    `cogmap explore furnished --motion rotation --camera perspective --out spin.zarr`;
+    `cogmap explore open_field --motion replay --path rat.csv --fit --out rat.zarr`.
+
+    Parameters
+    ----------
+    arena
+        A room of the gallery or a TOML file.
+    out
+        Folder of the recording.
+    motion
+        How to move.
+    odorant
+        Which odour `chemotaxis` climbs, from 0.
+    path
+        CSV or NPZ file of the path that `replay` follows: columns t (s), x, y (m) and, optionally, heading
+        (rad) or heading_deg.
+    fit
+        Whether `replay` scales and moves the path to fit the room.
+    views
+        How many to take; what the motion does by default, such as 17,000 brownian ones, or all of a path.
+    camera
+        What it looks through: all around, or 90° ahead.
+    width, height
+        Of the views, pixels; 360×60 all around and 320×240 ahead by default.
+    noise
+        Standard deviation of the log of the smelt concentration.
+    """
+    way = {"odorant": odorant, "path": path, "fit": fit}
+    size = {"width": width, "height": height}
+    recording = explore(
+        Arena.load(arena),
+        MOTIONS[motion](**{name: value for name, value in way.items() if value is not None}),
+        getattr(Camera, camera)(**{name: value for name, value in size.items() if value is not None}),
+        nose=Nose(noise=noise),
+        views=views,
+        seed=seed,
+        out=out,
+        progress=sys.stderr.isatty(),
+    )
+    tell(
+        {"recording": str(out), "views": len(recording), "odorants": recording.odours.shape[1]},
+        as_json=as_json,
+    )
