@@ -140,7 +140,7 @@ def _direct(cmap: CognitiveMap, views: tuple[Any, Any]) -> Seen:
 
 def _figures(ground: Ground, seen: Seen) -> dict[str, float]:
     place, heading = (ground.measure(rates) for rates in seen.asked)
-    known, asked = (np.nan_to_num(some.heading) for some in seen)
+    known, asked = (np.nan_to_num(some.heading).astype(float) for some in seen)
     cosine, sine = Ridge(alpha=1.0).fit(known, _on_circle(ground.known[:, 2])).predict(asked).T
     turned = np.angle(np.exp(1j * (np.arctan2(sine, cosine) - ground.poses[:, 2])))
     return {

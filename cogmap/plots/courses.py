@@ -9,7 +9,7 @@ from cogmap.errors import CogmapError
 from cogmap.plots.style import BAD, GOOD, SOFT, new_figure, tidy, tidy_legend
 
 PANELS = {
-    "cells that pass, area covered (share)": {
+    "passing, covered (share)": {
         "place_cells_passing": ("place cells", GOOD, "-"),
         "heading_cells_passing": ("heading cells", BAD, "-"),
         "place_coverage": ("area in a place field", SOFT, "--"),
