@@ -22,6 +22,7 @@ VIEWS = {
     "sources": 200,
     "goals": 600,
 }
+QUICK = ("rotation", "roadmap", "distinguishability", "fusion")
 KEYS = {
     "rotation": {"test_correlation", "median_error_deg", "betti", "dimension", "geodesic_rank_correlation"},
     "cyclic": {"heading_resultant", "translation_r2", "betti", "dimension"},
@@ -36,7 +37,9 @@ KEYS = {
 }
 
 
-@pytest.mark.parametrize("name", VIEWS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.full]) for name in VIEWS]
+)
 def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> None:
     out = tmp_path / name
     result = experiment(name, out, views=VIEWS[name], seed=1)

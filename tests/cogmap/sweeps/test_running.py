@@ -160,6 +160,7 @@ def test_two_dask_workers_give_the_same_table(undisturbed: Laboratory, tmp_path:
     assert set(lab.begun().values()) == {1}
 
 
+@pytest.mark.full
 def test_a_scheduler_that_dies_is_one_sentence_and_the_rest_is_done_here(tmp_path: Path) -> None:
     text = 'experiment = "cheap"\n[grid]\n"nose.noise" = [0, 1]\n"map.charts" = [1, 2, 3, 4, 5, 6]\n'
     lab = laboratory(tmp_path / "dying", text, seconds=1.0)
