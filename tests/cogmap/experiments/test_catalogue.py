@@ -60,6 +60,7 @@ def test_the_white_room_is_confused_and_the_blue_wall_is_not() -> None:
     assert metrics["confusion_blue_wall"] < 0.02
 
 
+@pytest.mark.full
 def test_the_same_seed_gives_the_same_tables() -> None:
     room = Arena.load("open_field")
     one, same = (experiment("rotation", views=200, seed=2, room=room) for _ in range(2))
