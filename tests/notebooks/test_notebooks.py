@@ -67,7 +67,7 @@ def test_it_reads_well(path: Path) -> None:
         for module in re.findall(r"^(?:from|import) (\S+)", cell.source, re.MULTILINE):
             assert module in {"arena", "cogmap", "numpy", "pathlib", "tempfile"}
     text = path.read_text(encoding="utf-8")
-    assert not re.search(r"stderr|/tmp/|/root/|/home/|/work/", text)
+    assert not re.search(r"stderr|/(tmp|root|home|work)/", text)
 
 
 def figures(cell: Any) -> int:
