@@ -290,7 +290,7 @@ class CognitiveMap:
                 tuple(learnt["view_shape"]),
                 learnt["odorants"],
                 epoch=learnt["epoch"],
-                charts=learnt.get("charts"),
+                charts=learnt["charts"],
             )
             loaded._layers.load_state_dict(weights)
         except (KeyError, TypeError, RuntimeError) as error:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
-from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -17,6 +15,7 @@ from cogmap.cells import poisson_spikes
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.inputs import checked_count
+from cogmap.writing import check_absent, whole
 
 START = datetime(2000, 1, 1, tzinfo=UTC)
 """When a simulated session begins: the format asks for a date, and there is none."""
@@ -61,10 +60,7 @@ def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int
         raise CogmapError(
             "writing NWB needs pynwb, which is not installed; run `pip install 'cogmap[nwb]'`"
         ) from None
-    if out.exists() or out.is_symlink():
-        raise CogmapError(
-            f"{out} exists already and is left as it is; choose another path or remove it first"
-        )
+    check_absent(out)
     if recording.poses is None:
         raise CogmapError("the recording has no poses to export; use one that kept them")
     lasting = _durations(recording.times)
@@ -73,17 +69,8 @@ def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int
     rates = {name: getattr(activity, name).astype(float) for name in ("place", "heading")}
     spikes = {name: _spike_times(cells, recording.times, lasting, rng) for name, cells in rates.items()}
     file = _lay_out(recording, rates, spikes)
-    partial = out.with_name(f".{out.stem}.{os.getpid()}.partial.nwb")
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        with pynwb.NWBHDF5IO(partial, "w") as disk:
-            disk.write(file)
-        partial.rename(out)
-    except OSError as error:
-        raise CogmapError(f"cannot write {out}: {error.strerror or error}") from None
-    finally:
-        with suppress(OSError):
-            partial.unlink()
+    with whole(out) as fresh, pynwb.NWBHDF5IO(fresh, "w") as disk:
+        disk.write(file)
 
 
 def _durations(times: Float[np.ndarray, " views"]) -> Float[np.ndarray, " views"]:

@@ -44,7 +44,7 @@ class Layers(nn.Module):
     the charts; then each chart learns how smell changes across it; then the charts agree on a compass, the
     cells share out what is recalled; from the order of views the gauge learns where places are and by how
     much the compass is off there; and at last the cells' afferents from sight are learnt. From the third
-    stage on, all that is learnt are sums.
+    stage on, all but what the cells compete for are sums.
 
     Parameters
     ----------

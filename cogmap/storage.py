@@ -1,8 +1,6 @@
 """How a map lies on disk: a folder with its weights and its settings, neither of which can run code."""
 
 import json
-import os
-import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,6 +10,7 @@ from safetensors.torch import load_file, save_file
 from torch import Tensor
 
 from cogmap.errors import CogmapError
+from cogmap.writing import check_absent, whole
 
 VERSION = 2
 _WEIGHTS, _SETTINGS = "weights.safetensors", "map.json"
@@ -21,21 +20,12 @@ def write_map(
     path: Path, weights: Mapping[str, Tensor], settings: Mapping[str, Any], learnt: Mapping[str, Any]
 ) -> None:
     """Fill a new folder under another name and give it the right one at the end."""
-    if path.exists() or path.is_symlink():
-        raise CogmapError(
-            f"{path} exists already and is left as it is; choose another path or remove it first"
-        )
-    folder = path.with_name(f".{path.name}.{os.getpid()}.partial")
+    check_absent(path)
     described = {"version": VERSION, "settings": dict(settings), "learnt": dict(learnt)}
-    try:
-        folder.mkdir(parents=True)
+    with whole(path) as folder:
+        folder.mkdir()
         save_file({name: weight.contiguous() for name, weight in weights.items()}, folder / _WEIGHTS)
         (folder / _SETTINGS).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
-        folder.rename(path)
-    except OSError as error:
-        raise CogmapError(f"cannot write the map {path}: {error.strerror or error}") from None
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def read_map(path: Path) -> tuple[dict[str, Tensor], dict[str, Any], dict[str, Any]]:

@@ -15,7 +15,7 @@ def as_table(metrics: Mapping[str, Any]) -> str:
 
 def as_rows(metrics: Mapping[str, Any]) -> list[tuple[str, str, str]]:
     """Give name, value and unit of each entry that is not empty, those of nested records too."""
-    return [(name, shown(value), _unit(name)) for name, value in _flat(metrics).items() if value != ""]
+    return [(name, shown(value), _unit(name)) for name, value in flat(metrics).items() if value != ""]
 
 
 def shown(value: object) -> str:
@@ -23,11 +23,15 @@ def shown(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float) else str(value)
 
 
-def _flat(record: Mapping[str, Any]) -> dict[str, Any]:
+def flat(record: Mapping[str, Any], *, lists: bool = False) -> dict[str, Any]:
+    """Lay out a nested record in one: names joined by dots, and those of the entries of lists by index."""
     parts: dict[str, Any] = {}
     for name, value in record.items():
-        if isinstance(value, Mapping):
-            parts |= {f"{name}.{key}": part for key, part in _flat(value).items()}
+        nested = value
+        if lists and isinstance(value, list | tuple):
+            nested = {str(index): part for index, part in enumerate(value)}
+        if isinstance(nested, Mapping):
+            parts |= {f"{name}.{key}": part for key, part in flat(nested, lists=lists).items()}
         else:
             parts[name] = value
     return parts

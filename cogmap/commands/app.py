@@ -33,14 +33,6 @@ def with_truth(path: Path) -> Recording:
     return recording
 
 
-def check_absent(out: Path) -> None:
-    """Raise when there is something at a path already."""
-    if out.exists():
-        raise CogmapError(
-            f"{out} exists already and is left as it is; choose another path or remove it first"
-        )
-
-
 def save_figure(figure: Figure, path: Path) -> None:
     """Write a PNG."""
     try:

@@ -10,9 +10,10 @@ import numpy as np
 
 from arena import Recording
 from cogmap.cognitive_map import CognitiveMap
-from cogmap.commands.app import Json, Seed, app, check_absent, tell, with_truth
+from cogmap.commands.app import Json, Seed, app, tell, with_truth
 from cogmap.export import export_nwb
 from cogmap.scoring import score
+from cogmap.writing import check_absent
 
 
 @app.command(name="learn")

@@ -11,7 +11,7 @@ import pandas as pd
 from arena import Brownian, Camera, Recording
 from cogmap.experiments.populations import MOST_CHARTS, Ground, grow_map, perceive, trust
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import FRESH, Setting, poses_of
+from cogmap.experiments.setting import Setting, poses_of
 from cogmap.plots import plot_cases
 from cogmap.scoring import score
 
@@ -54,9 +54,8 @@ def acuity(setting: Setting) -> Result:
 
 def look(setting: Setting, columns: int, *, fresh: bool = False) -> Recording:
     """Walk with an eye of so many columns, its pixels repeated until they are as many as receptors."""
-    views = min(FRESH, setting.views) if fresh else setting.views
     eye = Camera.panoramic(columns, columns // 6)
-    walk = setting.explore(Brownian(), eye, views=views, fresh=fresh)
+    walk = setting.explore(Brownian(), eye, fresh=fresh)
     times = -(-RECEPTORS // columns)
     if times == 1:
         return walk

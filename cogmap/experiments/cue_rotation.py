@@ -8,12 +8,12 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float
 
-from arena import Arena, Brownian, Camera
+from arena import Arena, Brownian, Camera, Recording
 from cogmap.cells import RateMaps, bin_edges, mean_vectors, rate_maps, tuning_curves
 from cogmap.errors import CogmapError
 from cogmap.experiments.populations import grow_map, map_correlations, perceive, trust
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import FRESH, Setting, poses_of
+from cogmap.experiments.setting import Setting, poses_of
 from cogmap.plots import Tuning, plot_examples
 
 PLATFORM, ROOM = 1.5, 2.5
@@ -35,29 +35,26 @@ def cue_rotation(setting: Setting) -> Result:
     rooms = {turns: square_room(setting.room, turns) for turns in (0, 1)}
     walk, before, after = (
         replace(setting, room=rooms[turns], seed=setting.seed + late).explore(
-            Brownian(), camera, views=min(setting.views, most), fresh=late > 0
+            Brownian(), camera, fresh=late > 0
         )
-        for turns, late, most in ((0, 0, setting.views), (0, 1, FRESH), (1, 2, FRESH))
+        for turns, late in ((0, 0), (0, 1), (1, 2))
     )
     cmap = grow_map(setting, walk)
     lit = perceive(cmap, before.views), perceive(cmap, after.views)
     dark = cmap.perceive(odours=before.odours), cmap.perceive(odours=after.odours)
     place = {
-        name: [_maps(seen.place, poses_of(one)) for seen, one in zip(pair, (before, after), strict=True)]
+        name: [_tuning(seen.place, one) for seen, one in zip(pair, (before, after), strict=True)]
         for name, pair in (("light", lit), ("dark", dark))
     }
+    heading = [_tuning(seen.heading, one) for seen, one in zip(lit, (before, after), strict=True)]
     table = pd.DataFrame(
         {
-            f"{name}_{cue}": map_correlations(turned(maps[0], turns), maps[1])
-            for name, maps in place.items()
+            f"{name}_{cue}": map_correlations(turned(cells[0].maps, turns), cells[1].maps)
+            for name, cells in place.items()
             for cue, turns in (("walls", 1), ("smells", 0))
         }
     )
-    curves = [
-        tuning_curves(np.nan_to_num(seen.heading), poses_of(one)[:, 2])
-        for seen, one in zip(lit, (before, after), strict=True)
-    ]
-    shift = np.rad2deg(np.angle(mean_vectors(curves[1]) * mean_vectors(curves[0]).conj()))
+    shift = np.rad2deg(np.angle(mean_vectors(heading[1].curves) * mean_vectors(heading[0].curves).conj()))
     figures = {
         "heading_shift_deg": float(np.median(shift)),
         "heading_follows_walls": float((abs(shift - 90) < 45).mean()),
@@ -78,21 +75,11 @@ def cue_rotation(setting: Setting) -> Result:
         figures={
             "examples": plot_examples(
                 {
-                    "in the light, before": Tuning(
-                        place["light"][0], _curves(lit[0].place, poses_of(before))
-                    ),
-                    "in the light, walls turned": Tuning(
-                        place["light"][1], _curves(lit[1].place, poses_of(after))
-                    ),
-                    "in the dark, walls turned": Tuning(
-                        place["dark"][1], _curves(dark[1].place, poses_of(after))
-                    ),
-                    "heading cells, before": Tuning(
-                        _maps(np.nan_to_num(lit[0].heading), poses_of(before)), curves[0]
-                    ),
-                    "heading cells, walls turned": Tuning(
-                        _maps(np.nan_to_num(lit[1].heading), poses_of(after)), curves[1]
-                    ),
+                    "in the light, before": place["light"][0],
+                    "in the light, walls turned": place["light"][1],
+                    "in the dark, walls turned": place["dark"][1],
+                    "heading cells, before": heading[0],
+                    "heading cells, walls turned": heading[1],
                 }
             )
         },
@@ -129,12 +116,8 @@ def turned(maps: RateMaps, turns: int) -> RateMaps:
     return RateMaps(np.rot90(maps.rates, -turns, axes=(1, 2)), np.rot90(maps.occupancy, -turns), maps.edges)
 
 
-def _maps(rates: Float[np.ndarray, "views cells"], poses: Float[np.ndarray, "views 3"]) -> RateMaps:
+def _tuning(rates: Float[np.ndarray, "views cells"], walk: Recording) -> Tuning:
+    """Rate maps and tuning curves; a cell without a compass, of rate NaN, is silent."""
+    rates, poses = np.nan_to_num(rates), poses_of(walk)
     edges = bin_edges(PLATFORM * np.array(CORNERS, dtype=float))
-    return rate_maps(rates, poses[:, :2], edges=edges)
-
-
-def _curves(
-    rates: Float[np.ndarray, "views cells"], poses: Float[np.ndarray, "views 3"]
-) -> Float[np.ndarray, "cells bins"]:
-    return tuning_curves(rates, poses[:, 2])
+    return Tuning(rate_maps(rates, poses[:, :2], edges=edges), tuning_curves(rates, poses[:, 2]))

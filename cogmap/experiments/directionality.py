@@ -15,7 +15,7 @@ from cogmap.experiments.populations import (
     trust,
 )
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import FRESH, Setting, poses_of
+from cogmap.experiments.setting import Setting, poses_of
 from cogmap.plots import Tuning, plot_cell_types, plot_examples
 
 DIRECTIONAL = 0.5
@@ -41,7 +41,7 @@ def directionality(setting: Setting) -> Result:
     drawn: dict[str, dict[str, Tuning]] = {}
     for name, motion in WALKS.items():
         walk = setting.explore(motion, Camera.panoramic())
-        fresh = setting.explore(motion, Camera.panoramic(), views=min(FRESH, setting.views), fresh=True)
+        fresh = setting.explore(motion, Camera.panoramic(), fresh=True)
         known = poses_of(walk)
         ground = Ground(known, poses_of(fresh), known[:, :2])
         cmap = grow_map(setting, walk)

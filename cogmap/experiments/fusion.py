@@ -7,7 +7,7 @@ import numpy as np
 from arena import Brownian, Camera
 from cogmap.experiments.populations import Ground, as_one_table, competing_cells, grow_map, perceive, trust
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import FRESH, Setting, poses_of
+from cogmap.experiments.setting import Setting, poses_of
 from cogmap.plots import plot_cell_types, plot_examples
 from cogmap.scoring import score
 
@@ -25,7 +25,7 @@ def fusion(setting: Setting) -> Result:
     """
     camera = Camera.panoramic()
     walk = setting.explore(Brownian(), camera)
-    fresh = setting.explore(Brownian(), camera, views=min(FRESH, setting.views), fresh=True)
+    fresh = setting.explore(Brownian(), camera, fresh=True)
     cmap = grow_map(setting, walk)
     ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
     known, asked = (perceive(cmap, one.views) for one in (walk, fresh))

@@ -14,7 +14,7 @@ from cogmap.cells import fit_heading_frame, heading_errors
 from cogmap.experiments.distinguishability import retina_codes
 from cogmap.experiments.populations import Ground, as_one_table
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import FRESH, Setting, poses_of
+from cogmap.experiments.setting import Setting, poses_of
 from cogmap.manifold import betti, circular_coordinate, nearest_points, neighbour_graph
 from cogmap.plots import plot_cell_types, plot_examples, plot_goals
 
@@ -50,7 +50,7 @@ def goals(setting: Setting) -> Result:
     """
     camera = Camera.panoramic()
     visits = [_visit(setting, goal, camera) for goal in goal_grid(setting.room)]
-    fresh = setting.explore(Brownian(), camera, views=min(FRESH, setting.views), fresh=True)
+    fresh = setting.explore(Brownian(), camera, fresh=True)
     seen = np.concatenate([np.asarray(visit.views) for visit in visits])
     poses = np.concatenate([poses_of(visit) for visit in visits])
     ring = np.repeat(np.arange(len(visits)), [len(visit) for visit in visits])

@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from arena import Brownian, Camera
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import FRESH, Setting, poses_of
+from cogmap.experiments.setting import Setting, poses_of
 from cogmap.manifold import BagOfWords
 from cogmap.navigation import Localiser, Location, image_codes
 from cogmap.plots import plot_localisation, plot_neighbours
@@ -29,9 +29,7 @@ def localisation(setting: Setting) -> Result:
     view that shows no known word has no place, and `placed` is the share of those that have.
     """
     walk = setting.explore(Brownian(), Camera.perspective())
-    fresh = setting.explore(
-        Brownian(), Camera.perspective(noise=NOISE), views=min(FRESH, setting.views), fresh=True
-    )
+    fresh = setting.explore(Brownian(), Camera.perspective(noise=NOISE), fresh=True)
     words = BagOfWords(seed=setting.seed, progress=setting.progress)
     localiser = Localiser(words.fit_transform(walk.views), codes=image_codes(walk.views))
     found = localiser.locate(words.transform(fresh.views), codes=image_codes(fresh.views))

@@ -12,11 +12,11 @@ from sklearn.linear_model import Ridge
 from sklearn.metrics import pairwise_distances_argmin
 
 from arena import Brownian, Camera
-from cogmap.cells.ratios import ratio
+from cogmap.cells.correlations import correlations
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.experiments.populations import Ground, as_one_table, grow_map, perceive, trust
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import FRESH, Setting, poses_of
+from cogmap.experiments.setting import Setting, poses_of
 from cogmap.experiments.surgery import afferent_weights, newborn, silenced, weights_of
 from cogmap.plots import plot_afferents, plot_courses
 from neurons.heading_cells import HeadDirectionCells
@@ -62,7 +62,7 @@ def neurons(setting: Setting) -> Result:
     """
     camera = Camera.panoramic()
     walk = setting.explore(Brownian(), camera)
-    fresh = setting.explore(Brownian(), camera, views=min(FRESH, setting.views), fresh=True)
+    fresh = setting.explore(Brownian(), camera, fresh=True)
     cmap = grow_map(setting, walk)
     step = max(1, len(walk) // REMEMBERED)
     ground = Ground.of(setting.room, poses_of(walk)[::step], poses_of(fresh))
@@ -158,9 +158,7 @@ def _on_circle(headings: Float[np.ndarray, "views"]) -> Float[np.ndarray, "views
 
 def _agreement(one: Float[np.ndarray, "views cells"], other: Float[np.ndarray, "views cells"]) -> float:
     """Median over cells of the correlation of their rates, NaN without a cell that ever fires."""
-    one, other = (rates - rates.mean(axis=0) for rates in (one, other))
-    spread = np.sqrt(np.square(one).sum(axis=0) * np.square(other).sum(axis=0))
-    return float(np.nanmedian(ratio((one * other).sum(axis=0), spread)))
+    return float(np.nanmedian(correlations(one.T, other.T)))
 
 
 def _mature(growth: pd.DataFrame, passing: str) -> int:

@@ -23,7 +23,7 @@ from cogmap.cells import (
     rate_maps,
     tuning_curves,
 )
-from cogmap.cells.ratios import ratio
+from cogmap.cells.correlations import correlations
 from cogmap.cognitive_map import BATCH, CognitiveMap
 from cogmap.experiments.setting import Setting
 from cogmap.layers import EPOCHS
@@ -154,13 +154,8 @@ class Measured(NamedTuple):
 
 def map_correlations(first: RateMaps, second: RateMaps) -> Float[np.ndarray, "cells"]:
     """Correlate the maps of the same cells over the bins that both know; NaN where one is flat."""
-    both = first.visited & second.visited
-    one, other = (
-        maps.rates[:, both] - maps.rates[:, both].mean(axis=1, keepdims=True) for maps in (first, second)
-    )
-    return ratio(
-        (one * other).sum(axis=1), np.sqrt(np.square(one).sum(axis=1) * np.square(other).sum(axis=1))
-    )
+    one, other = (maps.rates.reshape(len(maps.rates), -1) for maps in (first, second))
+    return correlations(one, other)
 
 
 def as_one_table(populations: dict[str, Measured]) -> pd.DataFrame:

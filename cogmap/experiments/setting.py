@@ -60,10 +60,12 @@ class Setting:
     ) -> Recording:
         """Walk through the room, by `motion` and `camera` where the setting has none of its own.
 
-        The walk is the same whatever the camera. From a library, it is taken once: who else wants it waits.
+        A fresh walk is another, of `FRESH` views, or of as many as are learnt from when these are fewer. The
+        walk is the same whatever the camera. From a library, it is taken once: who else wants it waits.
         """
         way, eye = self.motion or motion, self.camera or camera
-        views = self.views if views is None else views
+        if views is None:
+            views = min(FRESH, self.views) if fresh else self.views
         seed = self.seed + FRESH_SEED * fresh
 
         def walk(out: Path | None) -> Recording:

@@ -11,7 +11,7 @@ import pandas as pd
 from arena import Arena, Brownian, Camera, Nose, Recording
 from cogmap.experiments.populations import Ground, grow_map, perceive, trust
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import FRESH, FRESH_SEED, Setting, poses_of
+from cogmap.experiments.setting import FRESH_SEED, Setting, poses_of
 from cogmap.plots import plot_cases
 from cogmap.scoring import score
 
@@ -32,7 +32,7 @@ def sources(setting: Setting) -> Result:
     """
     camera = Camera.panoramic()
     walk = setting.explore(Brownian(), camera)
-    fresh = setting.explore(Brownian(), camera, views=min(FRESH, setting.views), fresh=True)
+    fresh = setting.explore(Brownian(), camera, fresh=True)
     ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
     cases = [(count, USUAL_NOISE) for count in range(1, len(PLACES) + 1)]
     cases += [(USUAL_SOURCES, noise) for noise in NOISE if noise != USUAL_NOISE]

@@ -13,10 +13,13 @@ from torch import Tensor
 
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.storage import read_map, write_map
+from neurons.afferents import Afferents
 
 FAR = 1e6
 """Where a silent chart has its centre along every component: no view comes near it."""
 POPULATIONS = ("place", "heading")
+SUMS = ("association", "activity")
+"""What afferents keep."""
 
 
 def weights_of(cmap: CognitiveMap) -> dict[str, Tensor]:
@@ -39,7 +42,7 @@ def operated(cmap: CognitiveMap, changed: Mapping[str, Tensor]) -> CognitiveMap:
 def newborn(cmap: CognitiveMap) -> CognitiveMap:
     """Copy a map whose cells hear nothing yet: their afferents from sight are as before any view."""
     weights = weights_of(cmap)
-    names = [f"{cells}.afferents.{sums}" for cells in POPULATIONS for sums in ("association", "activity")]
+    names = [f"{cells}.afferents.{sums}" for cells in POPULATIONS for sums in SUMS]
     return operated(cmap, {name: torch.zeros_like(weights[name]) for name in names})
 
 
@@ -52,6 +55,8 @@ def silenced(cmap: CognitiveMap, charts: Int[np.ndarray, "silent"]) -> Cognitive
 
 def afferent_weights(cmap: CognitiveMap, cells: str) -> Float[np.ndarray, "charts cells"]:
     """Give W in Hz from every chart to every cell of the population "place" or "heading"."""
-    weights = weights_of(cmap)
-    active = weights[f"{cells}.afferents.activity"].clamp(min=1e-12)
-    return np.asarray((weights[f"{cells}.afferents.association"] / active[:, None]).numpy())
+    learnt = weights_of(cmap)
+    sums = {name: learnt[f"{cells}.afferents.{name}"] for name in SUMS}
+    afferents = Afferents(*sums["association"].shape)
+    afferents.load_state_dict(sums)
+    return np.asarray(afferents.weights.numpy())

@@ -9,7 +9,7 @@ import numpy as np
 from arena import Brownian, Camera, Motion, Track
 from cogmap.experiments.populations import Ground, Measured, as_one_table, grow_map, perceive, trust
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import FRESH, Setting, poses_of
+from cogmap.experiments.setting import Setting, poses_of
 from cogmap.experiments.slow_features import slow_cells
 from cogmap.experiments.slow_turning import SlowTurning
 from cogmap.plots import plot_cell_types
@@ -37,9 +37,10 @@ def walks(setting: Setting) -> Result:
     """Learn the same room on four walks, by slowness and by smell.
 
     Slow feature analysis takes the Sanger codes of the views in their order; the fusion takes views and
-    smells and no notice of order. Each is measured on a fresh walk: brownian, but in the corridor where
-    nothing else has been seen. `position_median_m` of slow features is read from them by the same decoder.
-    The same cells of slow features are judged as place cells and as head-direction cells.
+    smells, and notices order only for its metric map and the gauge of its compass. Each is measured on a
+    fresh walk: brownian, but in the corridor where nothing else has been seen. `position_median_m` of slow
+    features is read from them by the same decoder. The same cells of slow features are judged as place cells
+    and as head-direction cells.
     """
     cells: dict[str, Measured] = {}
     metrics: dict[str, Any] = {}
@@ -60,7 +61,7 @@ def walks(setting: Setting) -> Result:
 def _learn(setting: Setting, way: Way) -> tuple[dict[str, Any], dict[str, Measured]]:
     camera = Camera.panoramic()
     walk = setting.explore(way.learnt, camera)
-    fresh = setting.explore(way.scored, camera, views=min(FRESH, setting.views), fresh=True)
+    fresh = setting.explore(way.scored, camera, fresh=True)
     if way.shuffled:
         walk = walk[np.random.default_rng(setting.seed).permutation(len(walk))]
     known, poses = poses_of(walk), poses_of(fresh)

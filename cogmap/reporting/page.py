@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
-from contextlib import suppress
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from cogmap.errors import CogmapError
 from cogmap.reporting.contents import read_contents
+from cogmap.writing import whole
 
 _PAGES = Environment(
     loader=PackageLoader("cogmap.reporting", "."),
@@ -40,16 +39,8 @@ def report(folder: Path, out: Path | None = None) -> Path:
     """
     out = folder / "report.html" if out is None else out
     page = _PAGES.get_template("report.html").render(found=read_contents(folder), mark=_MARK)
-    partial = out.with_name(f".{out.name}.{os.getpid()}.partial")
-    try:
+    with whole(out) as fresh:
         if out.exists() and (not out.is_file() or _MARK.encode() not in out.read_bytes()[:1000]):
             raise CogmapError(f"{out} exists and is not a report; choose another path or remove it first")
-        out.parent.mkdir(parents=True, exist_ok=True)
-        partial.write_text(page, encoding="utf-8")
-        partial.replace(out)
-    except OSError as error:
-        raise CogmapError(f"cannot write {out}: {error.strerror or error}") from None
-    finally:
-        with suppress(OSError):
-            partial.unlink()
+        fresh.write_text(page, encoding="utf-8")
     return out

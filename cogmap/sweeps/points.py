@@ -34,7 +34,7 @@ class Point:
     views: int
     room: Arena
     elsewhere: bool
-    """Whether the experiment is told the room, or takes its own."""
+    """Whether the experiment is told the room; else it takes its own, or all of its own."""
     different: dict[str, Any]
     """`nose`, `motion`, `camera` and `map`, where they are given."""
 
@@ -107,7 +107,7 @@ def _settle(name: str, chosen: Experiment, given: Mapping[str, Any]) -> dict[str
     return {
         "views": checked_count("views", given.get("views", chosen.views), FEWEST),
         "room": _room(given, chosen),
-        "elsewhere": chosen.elsewhere,
+        "elsewhere": "arena" in families,
         "different": {family: build[family](given) for family in build if family in families},
     }
 

@@ -19,7 +19,7 @@ from cogmap.errors import CogmapError
 from cogmap.experiments.catalogue import EXPERIMENTS, Experiment, experiment
 from cogmap.sweeps.ledger import KEPT, MARK, Ledger, is_full_disk, writing
 from cogmap.sweeps.points import Point
-from cogmap.sweeps.table import flat
+from cogmap.sweeps.table import comparable
 
 PATIENCE = 10.0
 """Seconds that a scheduler has to answer, and to find a worker."""
@@ -73,7 +73,7 @@ def _outcome(task: Task) -> dict[str, Any]:
                 library=task.ledger.walks,
                 **point.different,
             )
-        metrics: dict[str, Any] = json.loads(json.dumps(flat(found.metrics)))
+        metrics: dict[str, Any] = json.loads(json.dumps(comparable(found.metrics)))
     except Exception as error:  # noqa: BLE001  whatever a point raises is its outcome
         if is_full_disk(error):
             raise CogmapError(f"there is no space left on a disk; {KEPT}") from None

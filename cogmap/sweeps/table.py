@@ -10,6 +10,7 @@ import pandas as pd
 
 from cogmap.sweeps.ledger import Record
 from cogmap.sweeps.points import Point
+from cogmap.tables import flat
 
 OF_THE_MACHINE = re.compile(r"(^|[._])(seconds?|ms|memory|host)($|[._])")
 """Names of figures that are others on each run."""
@@ -17,21 +18,10 @@ ALWAYS = ("trusted", "reason", "error")
 """Columns that every table ends with."""
 
 
-def flat(metrics: Mapping[str, Any]) -> dict[str, Any]:
-    """Lay out nested metrics in one row: names joined by dots, lists by index; without time and memory."""
-    row: dict[str, Any] = {}
-    for name, value in metrics.items():
-        if OF_THE_MACHINE.search(name):
-            continue
-        if isinstance(value, Mapping):
-            parts: Mapping[str, Any] = value
-        elif isinstance(value, list | tuple):
-            parts = dict(zip(map(str, range(len(value))), value, strict=True))
-        else:
-            row[name] = value
-            continue
-        row |= {f"{name}.{key}": part for key, part in flat(parts).items()}
-    return row
+def comparable(metrics: Mapping[str, Any]) -> dict[str, Any]:
+    """Lay out nested metrics in one row, lists by index; without time and memory, which differ by run."""
+    row = flat(metrics, lists=True)
+    return {name: value for name, value in row.items() if not OF_THE_MACHINE.search(name)}
 
 
 def table_of(points: Sequence[Point], records: Sequence[Record]) -> pd.DataFrame:

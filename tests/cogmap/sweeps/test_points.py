@@ -112,3 +112,9 @@ def test_what_an_experiment_does_not_take_is_refused(name: str, given: dict[str,
 def test_the_same_point_twice_is_refused() -> None:
     with pytest.raises(CogmapError, match="is the same as"):
         points_of(Plan.create(experiment="toy", grid={"nose.noise": [0.1, 0.1]}))
+
+
+def test_an_experiment_of_several_rooms_keeps_them_unless_one_is_given() -> None:
+    grid: dict[str, Any] = {"views": [300, 400]}
+    assert not points_of(Plan.create(experiment="homology", grid=grid))[0].elsewhere
+    assert points_of(Plan.create(experiment="homology", grid=grid, set={"arena": "pillar"}))[0].elsewhere

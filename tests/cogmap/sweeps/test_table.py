@@ -4,7 +4,7 @@ import pandas as pd
 
 from cogmap import Plan
 from cogmap.sweeps.points import points_of
-from cogmap.sweeps.table import flat, table_of
+from cogmap.sweeps.table import comparable, table_of
 
 
 def test_nested_metrics_become_one_row_without_what_the_machine_does() -> None:
@@ -18,7 +18,7 @@ def test_nested_metrics_become_one_row_without_what_the_machine_does() -> None:
         "host": "here",
         "atoms": 7,
     }
-    assert flat(nested) == {"a": 1, "b.c": 2.5, "b.d.0": 1, "b.d.1.e": None, "atoms": 7}
+    assert comparable(nested) == {"a": 1, "b.c": 2.5, "b.d.0": 1, "b.d.1.e": None, "atoms": 7}
 
 
 def tabled(*metrics: dict[str, Any], **grid: list[Any]) -> pd.DataFrame:
