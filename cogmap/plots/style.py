@@ -7,7 +7,7 @@ of matplotlib, and changes none of them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 import pandas as pd
@@ -110,9 +110,14 @@ def tidy_room(axes: Axes, *, title: str = "") -> None:
     axes.set_aspect("equal")
 
 
-def tidy_legend(axes: Axes, *, title: str = "", loc: Literal["best", "lower right"] = "best") -> None:
-    """Explain the labelled artists, in small type."""
-    legend = axes.legend(title=title, loc=loc, fontsize=TINY, title_fontsize=TINY, labelcolor=INK)
+def tidy_legend(
+    axes: Axes, *, title: str = "", loc: Literal["best", "lower right", "beside"] = "best"
+) -> None:
+    """Explain the labelled artists, in small type; beside the axes nothing is covered."""
+    place: dict[str, Any] = {"loc": loc}
+    if loc == "beside":
+        place = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.0}
+    legend = axes.legend(title=title, fontsize=TINY, title_fontsize=TINY, labelcolor=INK, **place)
     legend.get_title().set_color(INK)
     legend.get_frame().set(facecolor="white", edgecolor="none", alpha=0.85)
 

@@ -136,7 +136,7 @@ def plot_trend(
             for mark, (value, some) in enumerate(every.groupby(other, sort=True)):
                 _draw(axes, some, axis, line="-", label=_short(value), mark=mark)
             if len(every):
-                tidy_legend(axes, title=_called(other, called))
+                tidy_legend(axes, title=_called(other, called), loc="beside")
         _draw_doubted(axes, table, statistic, axis)
         _scale(axes, axis)
     seeds = table["seed"].nunique()

@@ -66,3 +66,15 @@ def test_no_module_reaches_for_global_figures(module: Path) -> None:
     text = module.read_text(encoding="utf-8")
     assert "pyplot" not in text
     assert "rcParams" not in text
+
+
+def test_a_legend_beside_covers_nothing() -> None:
+    figure = style.new_figure(4, 3)
+    axes = figure.subplots()
+    axes.plot([0, 1], [0, 1], label="line")
+    style.tidy_legend(axes, title="of", loc="beside")
+    figure.draw_without_rendering()
+    legend = axes.get_legend()
+    assert legend is not None
+    assert legend.get_window_extent().x0 >= axes.get_window_extent().x1
+    assert legend.get_window_extent().x1 <= figure.bbox.x1
