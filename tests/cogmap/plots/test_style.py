@@ -69,7 +69,7 @@ def test_no_module_reaches_for_global_figures(module: Path) -> None:
 
 
 def test_a_legend_beside_covers_nothing() -> None:
-    figure = style.new_figure(4, 3)
+    figure = style.new_figure(4.0, 3.0)
     axes = figure.subplots()
     axes.plot([0, 1], [0, 1], label="line")
     style.tidy_legend(axes, title="of", loc="beside")
