@@ -1,8 +1,10 @@
-"""How much of two processes a sweep puts to use, on points of two seconds each."""
+"""How much of two processes a sweep puts to use, on points of two seconds and more."""
 
 import time
 from pathlib import Path
 from tempfile import TemporaryDirectory
+
+import numpy as np
 
 from benchmarks.timing import Figures
 from cogmap.experiments.catalogue import EXPERIMENTS, Experiment
@@ -11,6 +13,7 @@ from cogmap.experiments.setting import Setting
 from cogmap.sweeps import Plan, sweep
 
 SECONDS, WORKERS, POINTS = 2.0, 2, 48
+NOISES = np.linspace(0.05, 0.3, 24).tolist()
 
 
 def waiting(setting: Setting) -> Result:
@@ -31,15 +34,26 @@ def sweeping() -> Figures:
     """Measure the share of the least possible time, start of the processes included.
 
     Points that wait tell what the sweep itself costs; points that compute also what the machine's other work
-    does, so that the load stands beside them.
+    does, so that the load stands beside them. Fusions are the real thing: here the least possible time is
+    half of what one worker takes for the same points, and the two share the machine's memory.
     """
     figures: Figures = {"workers": WORKERS, "points": POINTS, "seconds_a_point": SECONDS}
     for conduct in (waiting, computing):
         EXPERIMENTS[conduct.__name__] = Experiment(conduct, "furnished", 200)
         plan = Plan.create(experiment=conduct.__name__, grid={"views": list(range(200, 200 + POINTS))})
-        with TemporaryDirectory() as folder:
-            started = time.perf_counter()
-            sweep(plan, Path(folder) / "swept", workers=WORKERS)
-            spent = time.perf_counter() - started
-        figures[f"efficiency_{conduct.__name__}"] = POINTS * SECONDS / WORKERS / spent
+        figures[f"efficiency_{conduct.__name__}"] = POINTS * SECONDS / WORKERS / spent(plan, WORKERS)
+    fusions = Plan.create(
+        experiment="fusion", views=3000, set={"map.charts": 800}, grid={"nose.noise": NOISES}
+    )
+    alone = spent(fusions, 1)
+    figures["seconds_a_fusion"] = alone / len(NOISES)
+    figures["efficiency_fusion"] = alone / WORKERS / spent(fusions, WORKERS)
     return figures
+
+
+def spent(plan: Plan, workers: int) -> float:
+    """Seconds that a sweep takes from nothing to its table."""
+    with TemporaryDirectory() as folder:
+        started = time.perf_counter()
+        sweep(plan, Path(folder) / "swept", workers=workers)
+        return time.perf_counter() - started
