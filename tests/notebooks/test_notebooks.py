@@ -20,7 +20,6 @@ SMALL: dict[str, dict[str, Any]] = {
     "7_the_homology_of_emergent_maps": {"VIEWS": 800, "CHARTS": 250, "LANDMARKS": (100, 50)},
     "8_your_own_arena": {"MINUTES": 5, "CHARTS": 250},
 }
-QUICK = ("1_a_spin_is_a_ring", "8_your_own_arena")
 
 
 def read(path: Path) -> Any:
@@ -33,9 +32,7 @@ def test_each_has_small_sizes() -> None:
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning")
 @pytest.mark.filterwarnings("ignore::ResourceWarning")
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.full]) for name in SMALL]
-)
+@pytest.mark.parametrize("name", SMALL)
 def test_it_runs(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     notebook = read(ROOT / "notebooks" / f"{name}.ipynb")
     (parameters,) = [cell for cell in notebook.cells if "parameters" in cell.metadata.get("tags", [])]
