@@ -25,6 +25,8 @@ PATIENCE = 10.0
 """Seconds that a scheduler has to answer, and to find a worker."""
 PULSE = 0.05
 """Seconds between two looks for what a cluster has done."""
+IDLE = 10.0
+"""Seconds after which a process without work ends, as all do whose sweep was killed."""
 _alone = threading.Lock()
 """One point at a time in a process: they set the number of threads for all of it."""
 
@@ -89,7 +91,7 @@ def on_this_machine(tasks: Sequence[Task], workers: int | None) -> Iterator[None
     CogmapError
         When what a task found cannot be put down, or a process was killed.
     """
-    pool = Parallel(workers or -1, batch_size=1, return_as="generator_unordered")
+    pool = Parallel(workers or -1, batch_size=1, return_as="generator_unordered", idle_worker_timeout=IDLE)
     try:
         yield from pool(delayed(do)(task) for task in tasks)
     except TerminatedWorkerError:

@@ -61,34 +61,28 @@ def pillar() -> Known:
     return Known(activity, homologies(cmap.encode(walk.views), activity, landmarks=LANDMARKS))
 
 
-@pytest.mark.full
 def test_views_around_a_pillar_have_two_loops_and_a_void(pillar: Known) -> None:
     assert pillar.betti["view_manifold"].numbers == (1, 2, 1), str(pillar.betti["view_manifold"])
 
 
-@pytest.mark.full
 def test_so_has_what_is_recalled_of_smell_and_heading(pillar: Known) -> None:
     assert pillar.betti["fused"].numbers == (1, 2, 1), str(pillar.betti["fused"])
 
 
-@pytest.mark.full
 def test_place_cells_keep_the_walk_around_the_pillar_and_forget_the_turn(pillar: Known) -> None:
     assert pillar.betti["place"].numbers == (1, 1, 0), str(pillar.betti["place"])
 
 
-@pytest.mark.full
 def test_head_direction_cells_keep_the_turn_and_forget_the_walk(pillar: Known) -> None:
     assert pillar.betti["heading"].numbers == (1, 1, 0), str(pillar.betti["heading"])
 
 
-@pytest.mark.full
 def test_together_the_populations_are_what_the_views_were(pillar: Known) -> None:
     """Künneth again, now backwards: two factors found apart give back the whole."""
     place, heading, views = (pillar.betti[name].numbers for name in ("place", "heading", "view_manifold"))
     assert tuple(np.convolve(place[:2], heading[:2])) == views
 
 
-@pytest.mark.full
 def test_no_call_was_close(pillar: Known) -> None:
     """The last bar that counts and the first that does not are well apart from the threshold."""
     for found in pillar.betti.values():
@@ -98,14 +92,12 @@ def test_no_call_was_close(pillar: Known) -> None:
         assert first is None or first < 0.95
 
 
-@pytest.mark.full
 def test_who_fires_with_whom_tells_the_same(pillar: Known) -> None:
     """Nothing is measured here: cells are joined that are active in the same views."""
     assert population_nerve(pillar.activity.place).numbers == (1, 1)
     assert population_nerve(pillar.activity.heading).numbers == (1, 1)
 
 
-@pytest.mark.full
 def test_a_population_that_is_silenced_around_the_pillar_tells_another_story(pillar: Known) -> None:
     """A loop is of all cells: without those on one side of the pillar it is open."""
     place, position = pillar.activity.place, pillar.activity.position

@@ -1,4 +1,4 @@
-"""Issue 3, points "Recording" and 4, at full size: killed explorations, memory, a disk that is full."""
+"""`make verify`: recordings at full size, killed, within memory, on a disk that is full."""
 
 import hashlib
 import json
@@ -9,7 +9,6 @@ import subprocess
 import sys
 import textwrap
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -95,22 +94,6 @@ def test_memory_of_a_hundred_thousand_views(tmp_path: Path) -> None:
     shutil.rmtree(tmp_path / "rec")
     assert process.returncode == 0
     assert peak <= MOST_BYTES
-
-
-@pytest.fixture
-def small_disk(tmp_path: Path) -> Iterator[Path]:
-    """A file system of 8 MB."""
-    disk = tmp_path / "disk"
-    disk.mkdir()
-    made = subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", "size=8m", "tmpfs", str(disk)],  # noqa: S607
-        check=False,
-        capture_output=True,
-    )
-    if made.returncode:
-        pytest.skip("mounting a small file system takes rights that this user lacks")
-    yield disk
-    subprocess.run(["umount", str(disk)], check=True)  # noqa: S607
 
 
 def test_disk_that_is_full(small_disk: Path, tmp_path: Path) -> None:

@@ -22,7 +22,6 @@ VIEWS = {
     "sources": 200,
     "goals": 600,
 }
-QUICK = ("rotation", "roadmap", "distinguishability", "fusion")
 KEYS = {
     "rotation": {"test_correlation", "median_error_deg", "betti", "dimension", "geodesic_rank_correlation"},
     "cyclic": {"heading_resultant", "translation_r2", "betti", "dimension"},
@@ -37,9 +36,7 @@ KEYS = {
 }
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.full]) for name in VIEWS]
-)
+@pytest.mark.parametrize("name", VIEWS)
 def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> None:
     out = tmp_path / name
     result = experiment(name, out, views=VIEWS[name], seed=1)
@@ -60,7 +57,6 @@ def test_the_white_room_is_confused_and_the_blue_wall_is_not() -> None:
     assert metrics["confusion_blue_wall"] < 0.02
 
 
-@pytest.mark.full
 def test_the_same_seed_gives_the_same_tables() -> None:
     room = Arena.load("open_field")
     one, same = (experiment("rotation", views=200, seed=2, room=room) for _ in range(2))

@@ -14,7 +14,6 @@ def result() -> Result:
     return experiment("neurons", views=VIEWS)
 
 
-@pytest.mark.full
 def test_cells_grow_with_experience(result: Result) -> None:
     growth = result.tables["growth"]
     assert growth["views"].tolist() == [*(seen for seen in SEEN if seen < VIEWS), VIEWS]
@@ -25,7 +24,6 @@ def test_cells_grow_with_experience(result: Result) -> None:
     assert first["heading_median_deg"] > 2 * last["heading_median_deg"]
 
 
-@pytest.mark.full
 def test_what_has_grown_again_is_what_there_was(result: Result) -> None:
     assert result.metrics["growth"][-1].keys() - {"views"} == result.metrics["driven"].keys()
     for name, value in result.metrics["driven"].items():
@@ -33,7 +31,6 @@ def test_what_has_grown_again_is_what_there_was(result: Result) -> None:
         assert result.metrics["silencing"][0][name] == pytest.approx(value)
 
 
-@pytest.mark.full
 def test_cells_outlast_charts(result: Result) -> None:
     silencing = result.tables["silencing"]
     assert tuple(silencing["silent"]) == SILENT
@@ -43,7 +40,6 @@ def test_cells_outlast_charts(result: Result) -> None:
     assert whole["heading_median_deg"] < half["heading_median_deg"] < 2 * whole["heading_median_deg"]
 
 
-@pytest.mark.full
 def test_weights_smooth_what_is_recalled(result: Result) -> None:
     agreement = result.metrics["agreement"]
     assert agreement["heading"] > 0.95
@@ -57,7 +53,6 @@ def test_weights_smooth_what_is_recalled(result: Result) -> None:
     }
 
 
-@pytest.mark.full
 def test_weights_lie_where_the_cell_fires(result: Result) -> None:
     afferents, cells = result.tables["afferents"], result.tables["cells"]
     assert (afferents["weight_hz"] >= LEAST).all()
@@ -72,7 +67,6 @@ def test_weights_lie_where_the_cell_fires(result: Result) -> None:
     assert np.nanmedian(away) < 0.25
 
 
-@pytest.mark.full
 def test_it_draws_weights_and_courses(result: Result) -> None:
     assert result.figures.keys() == {"afferents", "courses"}
     assert result.metrics["views_to_mature"].keys() == {"place", "heading"}

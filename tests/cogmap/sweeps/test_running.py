@@ -160,7 +160,6 @@ def test_two_dask_workers_give_the_same_table(undisturbed: Laboratory, tmp_path:
     assert set(lab.begun().values()) == {1}
 
 
-@pytest.mark.full
 def test_a_scheduler_that_dies_is_one_sentence_and_the_rest_is_done_here(tmp_path: Path) -> None:
     text = 'experiment = "cheap"\n[grid]\n"nose.noise" = [0, 1]\n"map.charts" = [1, 2, 3, 4, 5, 6]\n'
     lab = laboratory(tmp_path / "dying", text, seconds=1.0)
@@ -209,3 +208,27 @@ def test_a_worker_that_is_killed_is_one_sentence(tmp_path: Path) -> None:
     _, err = process.communicate(timeout=60)
     assert process.returncode == 2
     assert "was killed, perhaps for lack of memory" in err
+
+
+def works(process: psutil.Process) -> bool:
+    try:
+        return bool(process.status() != psutil.STATUS_ZOMBIE)
+    except psutil.NoSuchProcess:
+        return False
+
+
+@pytest.mark.full
+def test_processes_of_a_sweep_that_is_killed_end_within_a_minute_or_two(tmp_path: Path) -> None:
+    text = 'experiment = "cheap"\n[grid]\n"nose.noise" = [0]\n"map.charts" = [1, 2, 3, 4]\n'
+    lab = laboratory(tmp_path / "orphans", text, seconds=1.0)
+    process = lab.start("--workers", 2)
+    while not lab.begun() and process.poll() is None:
+        time.sleep(0.05)
+    orphans = psutil.Process(process.pid).children(recursive=True)
+    assert len(orphans) >= 2
+    process.kill()
+    process.wait()
+    until = time.monotonic() + 120
+    while any(map(works, orphans)) and time.monotonic() < until:
+        time.sleep(0.5)
+    assert not any(map(works, orphans))
