@@ -21,7 +21,7 @@ bench: .venv/peers
 	$(BIN)/python -m benchmarks
 
 verify: .venv/installed
-	$(BIN)/python -m pytest --numprocesses auto --dist worksteal -m full -rA
+	$(BIN)/python -m pytest -m full -rA
 
 notebooks: .venv/installed
 	$(BIN)/jupyter execute --inplace --timeout=1800 notebooks/*.ipynb

@@ -9,9 +9,9 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 from torch import Tensor
 
-ACTIVE = 0.2
+ACTIVE = 0.1
 """A chart where a unit fires at least at this part of its peak is one of its active charts."""
-RIVAL = 0.25
+RIVAL = 0.12
 """A group of active charts that evokes at least this part of what the strongest group does may be a place."""
 LIGHT = 0.03
 """A group that evokes less than this part of what the strongest does is noise."""
