@@ -20,7 +20,7 @@ lint: .venv/installed
 bench: .venv/peers
 	$(BIN)/python -m benchmarks
 
-verify: .venv/installed
+verify: .venv/peers
 	$(BIN)/python -m pytest -m full -rA
 
 notebooks: .venv/installed

@@ -102,6 +102,7 @@ def landmark_isomap(words: sp.csr_array) -> Figures:
         **{f"isomap_{name}_correlation": value for name, value in correlation.items()},
         "isomap_speed_over_sklearn": seconds["sklearn"] / seconds["landmark"],
         "isomap_memory_over_sklearn": memory["landmark"] / memory["sklearn"],
+        "isomap_correlation_below_sklearn": correlation["sklearn"] - correlation["landmark"],
     }
 
 
