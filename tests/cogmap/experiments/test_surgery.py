@@ -1,9 +1,11 @@
 import numpy as np
 import pytest
+import torch
 
 from arena import Recording
 from cogmap import CognitiveMap
 from cogmap.experiments.surgery import afferent_weights, newborn, operated, silenced, weights_of
+from neurons.recall import Excited
 
 
 def test_nothing_changed_is_the_same_map(cmap: CognitiveMap, walk: Recording) -> None:
@@ -34,19 +36,26 @@ def test_a_newborn_learns_the_same_weights_again(cmap: CognitiveMap, walk: Recor
         )
 
 
-def test_weights_are_what_cells_fire_by(cmap: CognitiveMap, walk: Recording) -> None:
-    """A rate is a mean of weights, so none goes beyond the largest."""
-    weights = afferent_weights(cmap, "place")
-    assert weights.shape == (cmap.charts, cmap.place_cells)
-    rates = cmap.perceive(walk.views[:200]).place
-    assert (rates <= weights.max(axis=0) + 1e-4).all()
-    assert rates.max() > 0.5 * weights.max()
+def excited(cmap: CognitiveMap, walk: Recording) -> Excited:
+    layers = cmap._layers
+    with torch.no_grad():
+        return layers.recall.excite(layers.charts, torch.from_numpy(cmap.encode(walk.views)))
+
+
+@pytest.mark.parametrize("cells", ["place", "heading"])
+def test_weights_are_what_cells_fire_by(cmap: CognitiveMap, walk: Recording, cells: str) -> None:
+    weights = afferent_weights(cmap, cells)
+    chart, activity = excited(cmap, walk)
+    fired = np.einsum("nw,nwc->nc", activity.numpy(), weights[chart.numpy()])
+    np.testing.assert_allclose(getattr(cmap.perceive(walk.views), cells), fired, rtol=1e-4, atol=1e-4)
 
 
 def test_silent_charts_are_never_heard(cmap: CognitiveMap, walk: Recording) -> None:
     views = walk.views[:100]
     silent = np.random.default_rng(0).permutation(cmap.charts)[: cmap.charts // 2]
+    assert np.isin(silent, excited(cmap, walk).chart.numpy()).all()
     less = silenced(cmap, silent)
+    assert not np.isin(silent, excited(less, walk).chart.numpy()).any()
     heard = less.perceive(views)
     assert np.isfinite(heard.place).all()
     assert not np.array_equal(heard.place, cmap.perceive(views).place)
