@@ -57,7 +57,7 @@ BARS: dict[str, list[tuple[str, str, Any]]] = {
         ("fused/metric_map_r2", "≥", 0.99),
     ],
     "walks": [
-        ("brownian/slow_features/place_cells_passing", "≥", 0.6),
+        ("brownian/slow_features/place_cells_passing", "≥", 0.8),
         ("brownian/slow_features/heading_cells_passing", "=", 0),
         ("slow_turning/slow_features/place_cells_passing", "=", 0),
         ("slow_turning/slow_features/heading_cells_passing", "≥", 0.6),
