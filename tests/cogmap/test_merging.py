@@ -191,7 +191,6 @@ def grown(walk: Recording, *, split: int | None, folder: Path) -> CognitiveMap:
     return cmap
 
 
-@pytest.mark.filterwarnings("ignore:this map is not to be trusted")
 def test_two_explorers_are_as_good_as_one(camera: Camera, tmp_path: Path) -> None:
     walk = explore(Arena.load("open_field"), Brownian(), camera, views=VIEWS, seed=0)
     whole, merged = (grown(walk, split=split, folder=tmp_path) for split in (None, VIEWS // 2))

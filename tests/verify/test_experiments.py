@@ -78,7 +78,11 @@ BARS: dict[str, list[tuple[str, str, Any]]] = {
         ("2_sources_0.1_noise/single_field", "≥", 0.85),
         *[(f"3_sources_{noise}_noise/place_cells_passing", "≥", 0.9) for noise in ("0", "0.1", "0.2", "0.3")],
     ],
-    "acuity": [("360_columns_3000_charts/heading_median_deg", "≤", 2.5)],
+    "acuity": [
+        ("90_columns_3000_charts/heading_median_deg", "≤", 3),
+        ("360_columns_3000_charts/heading_median_deg", "≤", 2.5),
+        ("360_columns_375_charts/heading_resultant", "≥", 0.98),
+    ],
     "darkness": [
         ("map_correlation", "≥", 0.8),
         ("sight/place_cells_passing", "≥", 0.95),
