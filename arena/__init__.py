@@ -2,23 +2,23 @@
 
 import gymnasium
 
-from arena.arena import Arena, gallery
-from arena.body import Body
-from arena.camera import Camera
+from arena.bodies.disc import Body
 from arena.errors import ArenaError
 from arena.exploration import explore
-from arena.light import Light
-from arena.motions import Motion, Walk
+from arena.eye.camera import Camera
+from arena.motions.base import Motion, Walk
 from arena.motions.brownian import Brownian
 from arena.motions.chemotaxis import Chemotaxis
 from arena.motions.cyclic import Cyclic
 from arena.motions.replay import Replay
 from arena.motions.rotation import Rotation
 from arena.motions.track import Track
-from arena.nose import Nose
-from arena.odour import OdourField
-from arena.parts import Block, Box, Pillar, Source, Wall
-from arena.recording import Recording
+from arena.recordings.recording import Recording
+from arena.rooms.arena import Arena, gallery
+from arena.rooms.light import Light
+from arena.rooms.parts import Block, Box, Pillar, Source, Wall
+from arena.smell.nose import Nose
+from arena.smell.odour import OdourField
 
 __all__ = [
     "Arena",

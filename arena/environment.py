@@ -11,13 +11,13 @@ import numpy as np
 from jaxtyping import UInt8
 from pydantic import Field
 
-from arena.arena import Arena
-from arena.body import Body, Drive
-from arena.camera import Camera
+from arena.bodies.disc import Body, Drive
 from arena.errors import ArenaError
 from arena.exploration import Eye
-from arena.nose import Nose
+from arena.eye.camera import Camera
+from arena.rooms.arena import Arena
 from arena.settings import Settings
+from arena.smell.nose import Nose
 from arena.topview import TopView
 
 Observation = dict[str, np.ndarray]

@@ -8,21 +8,21 @@ import numpy as np
 from jaxtyping import Float, UInt8
 from tqdm import tqdm
 
-from arena import storage
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
 from arena.errors import ArenaError
-from arena.motions import Motion
-from arena.nose import Nose
-from arena.recording import Recording
-from arena.sharding import Writer, shards
+from arena.motions.base import Motion
+from arena.recordings import storage
+from arena.recordings.recording import Recording
+from arena.recordings.sharding import Writer, shards
+from arena.rooms.arena import Arena
+from arena.smell.nose import Nose
 
 _BODY, _NOSE = Body(), Nose()
 
 
 @runtime_checkable
 class Eye(Protocol):
-    """What sees: an `arena.camera.Camera`, or anything that renders like it."""
+    """What sees: an `arena.eye.camera.Camera`, or anything that renders like it."""
 
     @property
     def height(self) -> int:

@@ -7,9 +7,9 @@ import numpy as np
 import shapely
 from jaxtyping import Float, UInt8
 
-from arena.arena import Arena
-from arena.body import Pose
-from arena.materials import texture
+from arena.bodies.disc import Pose
+from arena.rooms.arena import Arena
+from arena.rooms.materials import texture
 
 _MARGIN = 0.1
 """Of floor around everything, m."""

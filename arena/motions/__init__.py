@@ -1,50 +1,5 @@
 """Ways of moving through an arena, one file each."""
 
-from collections.abc import Mapping
-from typing import NamedTuple, Protocol, runtime_checkable
+from arena.motions.base import Motion, Walk
 
-import numpy as np
-from jaxtyping import Float
-
-from arena.arena import Arena
-from arena.body import Body
-
-
-class Walk(NamedTuple):
-    """Where a body was when it looked."""
-
-    times: Float[np.ndarray, " views"]
-    """s, never decreasing."""
-    poses: Float[np.ndarray, "views 3"]
-    """x, y in m and heading in rad, in (−π, π]."""
-    notes: Mapping[str, object] = {}
-    """What else there is to know about this walk, as far as JSON can say; `explore` keeps it."""
-
-
-@runtime_checkable
-class Motion(Protocol):
-    """Steers a body through an arena and says when it looks.
-
-    A motion is a value: `model_dump` gives the parameters that, with the arena, the body and the generator's
-    state, determine every walk to the last bit. All poses of a walk come from one `Drive`, or from a recorded
-    path; the body is free in each.
-    """
-
-    @property
-    def default_views(self) -> int | None:
-        """How many `explore` takes unless told; None takes all there are."""
-        ...
-
-    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
-        """Move until this many views are taken.
-
-        Raises
-        ------
-        ArenaError
-            When the body cannot start.
-        """
-        ...
-
-    def model_dump(self) -> dict[str, object]:
-        """Give the parameters."""
-        ...
+__all__ = ["Motion", "Walk"]

@@ -6,10 +6,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from arena.arena import Arena
-from arena.body import Body, Drive, Pose
-from arena.motions import Walk
-from arena.motions.stepping import STEP, Positive, Share, Spread, Way, look, random_start, turn_by
+from arena.bodies.disc import Body, Drive, Pose
+from arena.motions.base import Walk
+from arena.motions.locomotion import STEP, Positive, Share, Spread, Way, look, random_start, turn_by
+from arena.rooms.arena import Arena
 from arena.settings import Settings
 
 

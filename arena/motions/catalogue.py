@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from arena.motions import Motion
+from arena.motions.base import Motion
 from arena.motions.brownian import Brownian
 from arena.motions.chemotaxis import Chemotaxis
 from arena.motions.cyclic import Cyclic

@@ -7,13 +7,13 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
-from arena.arena import Arena
-from arena.body import Body, Drive, Pose
+from arena.bodies.disc import Body, Drive, Pose
 from arena.errors import ArenaError
-from arena.motions import Walk
-from arena.motions.stepping import STEP, Positive, Way, look, random_start, turn_by
-from arena.odour import OdourField
+from arena.motions.base import Walk
+from arena.motions.locomotion import STEP, Positive, Way, look, random_start, turn_by
+from arena.rooms.arena import Arena
 from arena.settings import Settings
+from arena.smell.odour import OdourField
 
 ENOUGH = 0.5
 """Where it smells less than this share of the strongest stay was no stay at the maximum."""

@@ -6,10 +6,10 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from arena.arena import Arena
-from arena.body import TOLERANCE, Body
+from arena.bodies.disc import TOLERANCE, Body
 from arena.errors import ArenaError
-from arena.motions.stepping import Place, free_space
+from arena.motions.locomotion import Place, free_space
+from arena.rooms.arena import Arena
 
 _LINES = 161
 _NARROW = 1e-3

@@ -7,11 +7,11 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
-from arena.arena import Arena
-from arena.body import Body, Drive
-from arena.motions import Walk
+from arena.bodies.disc import Body, Drive
+from arena.motions.base import Walk
 from arena.motions.corridor import corridor
-from arena.motions.stepping import Place, Positive, Spread, Way, bearing, go_to, look, turn_by
+from arena.motions.locomotion import Place, Positive, Spread, Way, bearing, go_to, look, turn_by
+from arena.rooms.arena import Arena
 from arena.settings import Settings
 
 FACING = 0.6

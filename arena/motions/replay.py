@@ -9,12 +9,12 @@ from jaxtyping import Float, Int
 from pydantic import Field, PlainSerializer, model_validator
 from shapely.geometry.base import BaseGeometry
 
-from arena.arena import Arena
-from arena.body import TOLERANCE, Body
+from arena.bodies.disc import TOLERANCE, Body
 from arena.errors import ArenaError
-from arena.motions import Walk
+from arena.motions.base import Walk
+from arena.motions.locomotion import Place, free_space
 from arena.motions.paths import RecordedPath, read_path
-from arena.motions.stepping import Place, free_space
+from arena.rooms.arena import Arena
 from arena.settings import Settings
 
 LATE = 1.5

@@ -7,10 +7,10 @@ import numpy as np
 import shapely
 from pydantic import Field
 
-from arena.arena import Arena
-from arena.body import Body
-from arena.motions import Walk
-from arena.motions.stepping import STEP, Place, Positive, Share, free_space
+from arena.bodies.disc import Body
+from arena.motions.base import Walk
+from arena.motions.locomotion import STEP, Place, Positive, Share, free_space
+from arena.rooms.arena import Arena
 from arena.settings import Settings
 
 

@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from arena import Brownian, Camera, Motion, Track
+from arena.motions.slow_turning import SlowTurning
 from cogmap.experiments.populations import Ground, Measured, as_one_table, grow_map, perceive, trust
 from cogmap.experiments.result import Result
 from cogmap.experiments.setting import Setting, poses_of
 from cogmap.experiments.slow_features import slow_cells
-from cogmap.experiments.slow_turning import SlowTurning
 from cogmap.plots import plot_cell_types
 from cogmap.scoring import score
 

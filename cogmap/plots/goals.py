@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from arena.arena import Arena
+from arena.rooms.arena import Arena
 from cogmap.plots.room import draw_surfaces
 from cogmap.plots.style import SOFT, direction_colours, heading_bar, new_figure, tidy, tidy_room
 

@@ -11,11 +11,11 @@ from matplotlib.patches import Polygon
 from matplotlib.patheffects import withStroke
 from shapely.geometry.base import BaseGeometry
 
-from arena.arena import Arena
-from arena.light import Light
-from arena.materials import texture
-from arena.odour import FAINTEST
-from arena.parts import Solid, Wall
+from arena.rooms.arena import Arena
+from arena.rooms.light import Light
+from arena.rooms.materials import texture
+from arena.rooms.parts import Solid, Wall
+from arena.smell.odour import FAINTEST
 from cogmap.cells.checks import check_array
 from cogmap.plots.style import INK, SMALL, SOFT, TINY, direction_colours, new_figure, tidy_room
 

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
+from arena.rooms.arena import Arena
 from cogmap.cells.checks import check_array
 from cogmap.plots.room import draw_surfaces
 from cogmap.plots.style import BAD, GOOD, INK, SMALL, new_figure, tidy_room

@@ -6,9 +6,9 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.figure import Figure
 
-from arena.arena import Arena
-from arena.body import Body
-from arena.camera import Camera
+from arena.bodies.disc import Body
+from arena.eye.camera import Camera
+from arena.rooms.arena import Arena
 from cogmap.manifold.rips import euclidean, farthest_points
 from cogmap.plots.style import INK, SMALL, new_figure
 from cogmap.plots.views import WIDTH, draw_views, sheet_height

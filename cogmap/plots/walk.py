@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from arena.arena import Arena
+from arena.rooms.arena import Arena
 from cogmap.cells.checks import check_array
 from cogmap.plots.room import draw_surfaces
 from cogmap.plots.style import (

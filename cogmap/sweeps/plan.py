@@ -14,7 +14,7 @@ import numpy as np
 import tomli_w
 from pydantic import Field, ValidationError
 
-from arena.parts import Part
+from arena.rooms.parts import Part
 from arena.settings import complaint
 from cogmap.errors import CogmapError
 from cogmap.sweeps.sampling import Sample

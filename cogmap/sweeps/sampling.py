@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 from scipy.stats import qmc
 
-from arena.parts import Part
+from arena.rooms.parts import Part
 from cogmap.errors import CogmapError
 
 MOST = 2**16

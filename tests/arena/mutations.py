@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from arena.materials import MATERIALS
+from arena.rooms.materials import MATERIALS
 
 VALUES: list[Any] = [
     *(0, -1, 3, 10**19, 2**63 - 1, True, False, 0.0, -0.0, 1e-300, 1e-9, 1e-4, 0.01, 0.3, 2.0, 40.0, 300.0),

@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from arena.arena import Arena
-from arena.camera import Camera
-from arena.materials import TEXEL, TILE, texture
-from arena.raycast import CEILING, FLOOR
+from arena.eye.camera import Camera
+from arena.eye.raycast import CEILING, FLOOR
+from arena.rooms.arena import Arena
+from arena.rooms.materials import TEXEL, TILE, texture
 
 Sampler = Callable[[str, np.ndarray, np.ndarray], np.ndarray]
 

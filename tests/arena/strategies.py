@@ -6,8 +6,8 @@ import numpy as np
 import shapely
 from hypothesis import strategies as st
 
-from arena.arena import Arena
-from arena.materials import MATERIALS
+from arena.rooms.arena import Arena
+from arena.rooms.materials import MATERIALS
 
 NAMES = sorted(MATERIALS)
 BESIDE = 0.08

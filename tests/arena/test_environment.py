@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from arena.arena import Arena
-from arena.body import Body
-from arena.camera import Camera
+from arena.bodies.disc import Body
 from arena.environment import Explorer, Observation, OdourClimbed
 from arena.errors import ArenaError
-from arena.nose import Nose
+from arena.eye.camera import Camera
+from arena.rooms.arena import Arena
+from arena.smell.nose import Nose
 
 ROOT = Path(__file__).parents[2]
 FORWARD = np.array([0.5, 0.0], np.float32)

@@ -12,18 +12,18 @@ import numpy as np
 import pytest
 import zarr
 
-from arena import sharding
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
 from arena.errors import ArenaError
 from arena.exploration import explore
 from arena.motions.brownian import Brownian
 from arena.motions.chemotaxis import Chemotaxis
 from arena.motions.replay import Replay
 from arena.motions.track import Track
-from arena.nose import Nose
-from arena.recording import Recording
-from arena.sharding import is_whole
+from arena.recordings import sharding
+from arena.recordings.recording import Recording
+from arena.recordings.sharding import is_whole
+from arena.rooms.arena import Arena
+from arena.smell.nose import Nose
 
 VIEWS = 700
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import shapely
 
-from arena.arena import Arena, gallery
-from arena.camera import Camera
-from arena.parts import Box
+from arena.eye.camera import Camera
+from arena.rooms.arena import Arena, gallery
+from arena.rooms.parts import Box
 
 RADIUS = 0.18
 FREE = 4 - 0.36, 3 - 0.36

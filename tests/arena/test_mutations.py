@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arena.arena import Arena, gallery
-from arena.body import Body
-from arena.camera import Camera
+from arena.bodies.disc import Body
 from arena.errors import ArenaError
+from arena.eye.camera import Camera
+from arena.rooms.arena import Arena, gallery
 from tests.arena.mutations import mutate
 
 ROOMS = resources.files("arena") / "gallery"

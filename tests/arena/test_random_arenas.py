@@ -6,8 +6,8 @@ import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
+from arena.rooms.arena import Arena
 from tests.arena.strategies import arenas
 
 # beartype picks at random what it looks at in a list.

@@ -6,10 +6,10 @@ import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from arena import raycast
-from arena.arena import Arena
-from arena.camera import Camera
-from arena.parts import Solid
+from arena.eye import raycast
+from arena.eye.camera import Camera
+from arena.rooms.arena import Arena
+from arena.rooms.parts import Solid
 from tests.arena.reference import trace
 from tests.arena.strategies import arenas
 

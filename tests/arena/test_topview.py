@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from arena.arena import Arena
+from arena.rooms.arena import Arena
 from arena.topview import TopView
 
 BODY = (214, 69, 65)

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arena.sharding import file, is_whole, shards
+from arena.recordings.sharding import file, is_whole, shards
 
 pytestmark = pytest.mark.full
 

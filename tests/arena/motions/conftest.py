@@ -3,7 +3,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from arena.arena import Arena
+from arena.rooms.arena import Arena
 
 
 @pytest.fixture(scope="session")

@@ -2,11 +2,11 @@ import numpy as np
 import pytest
 import shapely
 
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
 from arena.errors import ArenaError
-from arena.motions import Walk
+from arena.motions.base import Walk
 from arena.motions.brownian import STEP, Brownian
+from arena.rooms.arena import Arena
 
 
 def walk(motion: Brownian, views: int, arena: str = "open_field", seed: int = 0) -> Walk:

@@ -3,11 +3,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
 from arena.errors import ArenaError
-from arena.motions import Walk
+from arena.motions.base import Walk
 from arena.motions.chemotaxis import Chemotaxis
+from arena.rooms.arena import Arena
 
 SLOW = Body(max_acceleration=1.0, max_turn_acceleration=2.0)
 

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
 from arena.errors import ArenaError
 from arena.motions.cyclic import Cyclic
+from arena.rooms.arena import Arena
 
 
 def poses(motion: Cyclic, views: int = 4000, arena: str = "open_field", seed: int = 0) -> np.ndarray:

@@ -3,11 +3,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
 from arena.errors import ArenaError
-from arena.motions import Walk
+from arena.motions.base import Walk
 from arena.motions.replay import Replay
+from arena.rooms.arena import Arena
 
 SMALL = Body(radius=0.01)
 

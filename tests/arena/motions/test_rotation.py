@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
 from arena.errors import ArenaError
-from arena.motions import Walk
+from arena.motions.base import Walk
 from arena.motions.rotation import Rotation
+from arena.rooms.arena import Arena
 
 
 def spin(motion: Rotation, views: int = 1000, arena: str = "open_field", body: Body | None = None) -> Walk:

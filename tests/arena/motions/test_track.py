@@ -1,11 +1,11 @@
 import numpy as np
 import pytest
 
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
 from arena.errors import ArenaError
-from arena.motions import Walk
+from arena.motions.base import Walk
 from arena.motions.track import Track
+from arena.rooms.arena import Arena
 
 
 def run(motion: Track, views: int = 600, arena: str = "open_field", body: Body | None = None) -> Walk:

@@ -8,9 +8,9 @@ from matplotlib.colors import to_rgb
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 
-from arena.arena import Arena
 from arena.errors import ArenaError
-from arena.materials import texture
+from arena.rooms.arena import Arena
+from arena.rooms.materials import texture
 from cogmap.errors import CogmapError
 from cogmap.plots.room import FIRST_VIEWS, plot_room
 

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from arena.arena import Arena
-from arena.camera import Camera
 from arena.errors import ArenaError
+from arena.eye.camera import Camera
+from arena.rooms.arena import Arena
 from cogmap.plots.sheet import VIEWS, plot_sheet
 
 

@@ -3,9 +3,9 @@ import pytest
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from arena.arena import Arena
-from arena.body import Body
+from arena.bodies.disc import Body
 from arena.motions.rotation import Rotation
+from arena.rooms.arena import Arena
 from cogmap.errors import CogmapError
 from cogmap.plots.style import direction_colours
 from cogmap.plots.walk import STROKES, plot_walk

@@ -1,0 +1,1 @@
+"""Bodies that move through a room and are stopped by its walls."""

@@ -1,0 +1,1 @@
+"""The eye: rays cast into a room, textures averaged over each pixel, images out."""

@@ -1,0 +1,33 @@
+"""What an empty world looks like: the plain floor up to the horizon, and the ceiling above."""
+
+from functools import lru_cache
+
+import numpy as np
+from jaxtyping import UInt8
+
+from arena.eye.raycast import Lens, direction
+from arena.eye.texture_sampling import BLOCK
+
+_Colour = tuple[float, float, float] | tuple[int, int, int]
+
+
+@lru_cache(maxsize=64)
+def backdrop(
+    lens: Lens, floor: _Colour, ceiling: _Colour, zenith: _Colour | None
+) -> UInt8[np.ndarray, "columns blocks"]:
+    """Paint it: red, green, blue and a spare byte a row, in whole blocks; one column where all are alike.
+
+    The ceiling shades from its colour at the horizon to that of the zenith as the sine of the elevation. The
+    row that the horizon parts is all ceiling: `arena.eye.render` paints the floor over it.
+    """
+    alike = zenith is None or lens.panoramic
+    columns = 1 if alike else lens.width
+    aside = np.array([np.hypot(*direction(c + 0.5, lens)) for c in range(columns)])
+    rise = np.maximum(0.5 * lens.height - np.arange(lens.height) - 0.5, 0.0) / lens.focal
+    shade = (rise / np.hypot(aside[:, None], rise))[..., None]
+    colours = np.array(ceiling) + shade * (np.subtract(ceiling if zenith is None else zenith, ceiling))
+    colours[:, (lens.height + 1) // 2 :] = floor
+    length = -(-(4 * lens.height + BLOCK) // BLOCK) * BLOCK
+    out = np.zeros((len(aside), length // 4, 4), np.uint8)
+    out[:, : lens.height, :3] = np.rint(colours)
+    return out.reshape(len(aside), length)

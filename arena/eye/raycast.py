@@ -1,0 +1,359 @@
+"""Where the rays of one upright eye meet vertical faces on a flat floor: the geometry behind every image.
+
+The faces are projected once per view and listed by the image columns that they touch. A column is split
+wherever a face in sight begins or ends inside it; in each part the faces are met from near to far. Within a
+column all that is seen changes linearly.
+
+Kernels take plain arrays and tuples of numbers: numba counts references to an array each time it is taken out
+of a tuple, which costs more than the work done here.
+"""
+
+import typing
+
+import numpy as np
+from jaxtyping import Float, Int32, Shaped
+from numba import njit, prange
+
+NEAREST, FARTHEST = 1e-4, 1e6
+"""Depths (m) that the eye tells apart."""
+FLOOR, CEILING = -1, -2
+"""What `identify` calls the two surfaces that are not of any face or solid."""
+_AWAY_FIRST = 1 + 1e-9
+"""Where two solids touch, the far face of one is met before the near face of the other."""
+
+FACE = np.dtype(
+    [
+        ("x0", "f8"),
+        ("y0", "f8"),
+        ("x1", "f8"),
+        ("y1", "f8"),
+        ("height", "f8"),
+        ("offset", "f8"),
+        ("closed", "?"),
+        ("solid", "i4"),
+        ("start", "i8"),
+        ("left_light", "f8"),
+        ("right_light", "f8"),
+        ("red", "f8"),
+        ("green", "f8"),
+        ("blue", "f8"),
+    ],
+    align=True,
+)
+"""A vertical face of a room, as in `arena.rooms.surfaces.Surfaces`: its ends and height in m, where along its
+material it starts (m), the solid it bounds, how bright its two sides are, and the lid of its solid."""
+
+SIGHT = np.dtype([(name, "f8") for name in ("ahead", "left", "at", "along", "across", "length", "aside")])
+"""A face as seen from a pose: the ray towards (a, l) meets it at 1 / depth = ahead a + left l, which is
+at + depth (along a + across l) m along its `length` m. Its left is seen if aside > 0."""
+
+TOUCH = np.dtype(
+    [("face", "i8"), *((name, "f8") for name in ("begin", "end", "first", "last", "start", "stop"))]
+)
+"""A face in a column: where in it (0 to 1) the face begins and ends, and at the column's two sides 1 / depth
+and how far along its material (m) it is met."""
+
+HIT = np.dtype([("touch", "i8"), ("near", "f8")])
+"""A face that a ray meets, by its number in the column, and 1 / depth."""
+
+Faces = Shaped[np.ndarray, " faces"]
+Poses = Float[np.ndarray, "views 3"]
+
+
+class Lens(typing.NamedTuple):
+    """How the eye projects; see `arena.eye.camera.Camera`."""
+
+    width: int
+    height: int
+    focal: float
+    """Pixels per unit of tangent (perspective) or per radian (panoramic)."""
+    eye: float
+    """Height above the floor, m."""
+    panoramic: bool
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
+def _cover_around(a: tuple, b: tuple, lens: Lens) -> tuple[float, float, float]:
+    """First and last image coordinate of a face, and the last of what of it lies beyond the seam."""
+    xa = lens.focal * (np.pi - np.arctan2(a[1], a[0]))
+    xb = lens.focal * (np.pi - np.arctan2(b[1], b[0]))
+    low, high = min(xa, xb), max(xa, xb)
+    return (low, high, 0.0) if high - low <= 0.5 * lens.width else (high, float(lens.width), low)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
+def _cover_ahead(a: tuple, b: tuple, lens: Lens) -> tuple[float, float, float]:
+    far, near = (a, b) if a[0] > b[0] else (b, a)
+    x, y = near
+    if x < NEAREST:
+        x, y = NEAREST, y + (far[1] - y) * (NEAREST - x) / (far[0] - x)
+    xa = min(max(0.5 * lens.width - lens.focal * far[1] / far[0], 0.0), float(lens.width))
+    xb = min(max(0.5 * lens.width - lens.focal * y / x, 0.0), float(lens.width))
+    return min(xa, xb), max(xa, xb), 0.0
+
+
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def _project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray, span: np.ndarray) -> None:
+    """Put the faces into the eye's frame and find what they cover."""
+    cosine, sine = np.cos(pose[2]), np.sin(pose[2])
+    for f in range(len(faces)):
+        face, sight = faces[f], sights[f]
+        dx, dy = face.x0 - pose[0], face.y0 - pose[1]
+        a = cosine * dx + sine * dy, cosine * dy - sine * dx
+        dx, dy = face.x1 - pose[0], face.y1 - pose[1]
+        b = cosine * dx + sine * dy, cosine * dy - sine * dx
+        span[f, 0] = span[f, 1] = span[f + len(faces), 0] = span[f + len(faces), 1] = 0.0
+        cross = b[1] * a[0] - b[0] * a[1]
+        hidden = cross > 0.0 and face.closed and face.height >= lens.eye  # the back of a tall solid
+        if hidden or (not lens.panoramic and a[0] < NEAREST and b[0] < NEAREST):
+            continue
+        length = np.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2)
+        along, across = (b[0] - a[0]) / length, (b[1] - a[1]) / length
+        aside = cross / length if cross != 0.0 else 1e-12
+        sight.ahead, sight.left = across / aside, -along / aside
+        sight.at = -(a[0] * along + a[1] * across)
+        sight.along, sight.across = along, across
+        sight.length, sight.aside = length, aside
+        span[f, 0], span[f, 1], beyond = (
+            _cover_around(a, b, lens) if lens.panoramic else _cover_ahead(a, b, lens)
+        )
+        span[f + len(faces), 0], span[f + len(faces), 1] = 0.0, beyond
+
+
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def look(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray, span: np.ndarray) -> tuple:
+    """Project the faces, and list by columns which of them touch it.
+
+    Fills `sights` and `span`, of twice as many rows: first and last image coordinate of each face and, from
+    row `faces` on, of what of it lies beyond the seam of a panorama. Those that touch column c are the rows
+    listed[first[c]:first[c + 1]].
+    """
+    _project(pose, faces, lens, sights, span)
+    first = np.zeros(lens.width + 1, np.int32)
+    for row in range(len(span)):
+        if span[row, 1] > span[row, 0]:
+            for c in range(int(span[row, 0]), min(int(np.ceil(span[row, 1])), lens.width)):
+                first[c + 1] += 1
+    for c in range(lens.width):
+        first[c + 1] += first[c]
+    listed, fill = np.empty(first[-1], np.int32), first[:-1].copy()
+    for row in range(len(span)):
+        if span[row, 1] > span[row, 0]:
+            for c in range(int(span[row, 0]), min(int(np.ceil(span[row, 1])), lens.width)):
+                listed[fill[c]] = row
+                fill[c] += 1
+    return first, listed
+
+
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def direction(x: float, lens: Lens) -> tuple[float, float]:
+    """Direction (ahead, left) of image coordinate x; its part ahead is 1 in perspective."""
+    if lens.panoramic:
+        azimuth = np.pi - x / lens.focal
+        return np.cos(azimuth), np.sin(azimuth)
+    return 1.0, (0.5 * lens.width - x) / lens.focal
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
+def nearness(one: np.record, x: float) -> float:
+    """1 / depth of a touching face at x."""
+    return min(max(one.first + x * (one.last - one.first), 1.0 / FARTHEST), 1.0 / NEAREST)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
+def along(x: float, one: np.record, face: np.record, sight: np.record, rays: tuple) -> float:
+    """How far along its material (m) a touching face is met at x."""
+    (a0, l0), (a1, l1) = rays
+    ahead, left = a0 + x * (a1 - a0), l0 + x * (l1 - l0)
+    where = sight.at + (sight.along * ahead + sight.across * left) / nearness(one, x)
+    return face.offset + min(max(where, 0.0), sight.length)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
+def touch(
+    c: int,
+    low: int,
+    high: int,
+    listed: np.ndarray,
+    rays: tuple,
+    faces: np.ndarray,
+    sights: np.ndarray,
+    span: np.ndarray,
+    touches: np.ndarray,
+) -> None:
+    """Fill touches[low:high] with the faces listed there as they lie in column c, between two rays."""
+    (a0, l0), (a1, l1) = rays
+    for k in range(low, high):
+        row, one = listed[k], touches[k]
+        one.face = row if row < len(sights) else row - len(sights)
+        face, sight = faces[one.face], sights[one.face]
+        one.begin, one.end = max(span[row, 0] - c, 0.0), min(span[row, 1] - c, 1.0)
+        one.first = sight.ahead * a0 + sight.left * l0
+        one.last = sight.ahead * a1 + sight.left * l1
+        one.start = along(0.0, one, face, sight, rays)
+        one.stop = along(1.0, one, face, sight, rays)
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
+def _hidden(one: np.record, veil: np.record, faces: np.ndarray, lens: Lens) -> bool:
+    """Whether a face is behind another that fills the column and rises higher in the image."""
+    middle = 0.5 * (one.begin + one.end)
+    near, before = nearness(one, middle), nearness(veil, middle)
+    rise, crest = faces[one.face].height - lens.eye, faces[veil.face].height - lens.eye
+    return near < before and near * rise <= before * crest
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
+def split(low: int, high: int, faces: np.ndarray, lens: Lens, touches: np.ndarray, edges: np.ndarray) -> int:
+    """Cut a column where a face in sight begins or ends; the number of parts.
+
+    The column's faces are touches[low:high], here as below.
+    """
+    veil, crest = -1, -np.inf  # the face that fills the column and rises highest
+    for k in range(low, high):
+        one = touches[k]
+        rise = nearness(one, 0.5) * (faces[one.face].height - lens.eye)
+        if one.begin == 0.0 and one.end == 1.0 and rise > crest:
+            veil, crest = k, rise
+    edges[0], edges[1], parts = 0.0, 1.0, 1
+    for k in range(low, high):
+        one = touches[k]
+        if one.begin == 0.0 and one.end == 1.0:
+            continue
+        if veil >= 0 and _hidden(one, touches[veil], faces, lens):
+            continue
+        for x in (one.begin, one.end):
+            i = parts
+            while edges[i - 1] > x:
+                i -= 1
+            if edges[i - 1] < x < edges[i]:
+                for j in range(parts, i - 1, -1):
+                    edges[j + 1] = edges[j]
+                edges[i] = x
+                parts += 1
+    return parts
+
+
+@njit(cache=True, error_model="numpy", forceinline=True)
+@typing.no_type_check
+def meet(
+    x: float,
+    low: int,
+    high: int,
+    faces: np.ndarray,
+    sights: np.ndarray,
+    touches: np.ndarray,
+    hits: np.ndarray,
+) -> int:
+    """Find which touching faces the ray at x meets, from near to far; their number."""
+    met = 0
+    for k in range(low, high):
+        one = touches[k]
+        if one.begin <= x < one.end:
+            near = nearness(one, x)
+            if faces[one.face].closed and sights[one.face].aside > 0.0:
+                near *= _AWAY_FIRST
+            i = met
+            while i > 0 and hits[i - 1].near < near:
+                hits[i].near, hits[i].touch = hits[i - 1].near, hits[i - 1].touch
+                i -= 1
+            hits[i].near, hits[i].touch = near, k
+            met += 1
+    return met
+
+
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def _middle(
+    c: int,
+    first: np.ndarray,
+    listed: np.ndarray,
+    faces: np.ndarray,
+    lens: Lens,
+    sights: np.ndarray,
+    span: np.ndarray,
+    touches: np.ndarray,
+    hits: np.ndarray,
+) -> int:
+    """Find what the ray through the middle of column c meets, exactly."""
+    ray = direction(c + 0.5, lens)
+    low, high = first[c], first[c + 1]
+    touch(c, low, high, listed, (ray, ray), faces, sights, span, touches)
+    return meet(0.5, low, high, faces, sights, touches, hits)
+
+
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def _measure(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
+    """Measure the distances from one pose."""
+    sights, span = np.empty(len(faces), SIGHT), np.empty((2 * len(faces), 2))
+    first, listed = look(pose, faces, lens, sights, span)
+    touches, hits = np.empty(len(listed), TOUCH), np.empty(len(span), HIT)
+    for c in range(lens.width):
+        ahead, left = direction(c + 0.5, lens)
+        met = _middle(c, first, listed, faces, lens, sights, span, touches, hits)
+        out[c] = np.hypot(ahead, left) / hits[0].near if met > 0 else np.inf
+
+
+@njit(cache=True, error_model="numpy")
+@typing.no_type_check
+def _name(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
+    """Name the surface at the middle of every pixel of one view."""
+    sights, span = np.empty(len(faces), SIGHT), np.empty((2 * len(faces), 2))
+    first, listed = look(pose, faces, lens, sights, span)
+    touches, hits = np.empty(len(listed), TOUCH), np.empty(len(span), HIT)
+    horizon = 0.5 * lens.height
+    for c in range(lens.width):
+        met = _middle(c, first, listed, faces, lens, sights, span, touches, hits)
+        row, ground, beneath = lens.height - 1, 0.0, FLOOR
+        for i in range(met):
+            f, scale = touches[hits[i].touch].face, lens.focal * hits[i].near
+            while row >= 0 and row + 0.5 >= horizon + scale * (lens.eye - ground):
+                out[row, c] = beneath
+                row -= 1
+            if faces[f].closed and sights[f].aside > 0.0:
+                ground, beneath = 0.0, FLOOR
+                continue
+            while row >= 0 and row + 0.5 >= horizon + scale * (lens.eye - faces[f].height):
+                out[row, c] = f
+                row -= 1
+            if faces[f].closed and faces[f].height < lens.eye:
+                ground, beneath = faces[f].height, len(faces) + faces[f].solid
+        for r in range(row + 1):
+            out[r, c] = CEILING if r + 0.5 < horizon else beneath
+
+
+@njit(cache=True)
+@typing.no_type_check
+def unsound(poses: Poses) -> int:
+    """Find the first pose that is not finite; −1 when all are."""
+    for i in range(len(poses)):
+        if not (np.isfinite(poses[i, 0]) and np.isfinite(poses[i, 1]) and np.isfinite(poses[i, 2])):
+            return i
+    return -1
+
+
+@njit(parallel=True, cache=True, error_model="numpy")
+@typing.no_type_check
+def measure(poses: Poses, faces: Faces, lens: Lens, out: Float[np.ndarray, "views width"]) -> None:
+    """Write the distance (m) along each column's middle ray into `out`; infinity where nothing is met."""
+    for i in prange(len(poses)):
+        _measure(poses[i], faces, lens, out[i])
+
+
+@njit(parallel=True, cache=True, error_model="numpy")
+@typing.no_type_check
+def identify(poses: Poses, faces: Faces, lens: Lens, out: Int32[np.ndarray, "views height width"]) -> None:
+    """Write what is seen at the middle of each pixel into `out`; see `arena.eye.camera.Camera.identify`."""
+    for i in prange(len(poses)):
+        _name(poses[i], faces, lens, out[i])

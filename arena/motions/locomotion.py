@@ -1,0 +1,123 @@
+"""What motions share: the length of a step, turning, going, and looking on the way."""
+
+import math
+from collections.abc import Iterator
+from typing import Annotated
+
+import numpy as np
+from pydantic import Field
+from shapely.geometry.base import BaseGeometry
+
+from arena.bodies.disc import Body, Drive, Pose
+from arena.errors import ArenaError
+from arena.motions.base import Walk
+from arena.rooms.arena import Arena
+
+STEP = 0.05
+"""Length of a physics step, s."""
+STEER = 2.0
+"""Turn rate per error of heading, 1/s: so slow that a body that misses its goal passes it, not orbits it."""
+
+Place = tuple[float, float]
+"""x and y in m."""
+
+Way = tuple[float, float]
+"""How far a step went (m) and turned (rad), neither negative."""
+
+Positive = Annotated[float, Field(ge=0.01, le=100)]
+Spread = Annotated[float, Field(ge=0, le=100)]
+Share = Annotated[float, Field(ge=0, le=1)]
+
+
+def look(drive: Drive, ways: Iterator[Way], views: int, *, spacing: float, angle: float) -> Walk:
+    """Take a view at the start and after every `spacing` m or `angle` rad, whichever comes first.
+
+    Parameters
+    ----------
+    drive
+        The body.
+    ways
+        Makes the drive step by `STEP`, for ever, and tells how far.
+    views
+        How many to take.
+    """
+    times, poses = np.zeros(views), np.empty((views, 3))
+    poses[0] = drive.pose
+    seen, gone, turned = 1, 0.0, 0.0
+    for now, (way, turn) in enumerate(ways, start=1):
+        if seen == views:
+            break
+        gone += way
+        turned += turn
+        if gone >= spacing or turned >= angle:
+            times[seen], poses[seen] = now * STEP, drive.pose
+            seen, gone, turned = seen + 1, 0.0, 0.0
+    return Walk(times, poses)
+
+
+def turn_by(drive: Drive, angle: float, pace: float) -> Iterator[Way]:
+    """Turn on the spot by an angle (rad) at a pace (rad/s) that the body can keep."""
+    pace *= STEP
+    while angle:
+        turn = math.copysign(min(abs(angle), pace), angle)
+        drive.step(0.0, turn / STEP, STEP)
+        yield 0.0, abs(turn)
+        angle -= turn
+    # What a slow body turned too little while it sped up it turns while it stops.
+    yield from _rest(drive)
+
+
+def bearing(pose: Pose, goal: Place) -> float:
+    """By how much to turn (rad, the short way) to face a goal (m)."""
+    x, y, heading = pose
+    return math.remainder(math.atan2(goal[1] - y, goal[0] - x) - heading, 2 * math.pi)
+
+
+def go_to(drive: Drive, goal: Place, speed: float) -> Iterator[Way]:
+    """Go to a goal (m) straight ahead at a speed (m/s), until there, past it, or something is hit."""
+    braking = 2 * (drive.body.max_acceleration or math.inf)
+    while True:
+        pose = drive.pose
+        left, error = math.dist(pose[:2], goal), bearing(pose, goal)
+        if left < 1e-6 or abs(error) > 0.5 * math.pi or drive.contact is not None:
+            break
+        drive.step(min(speed, left / STEP, math.sqrt(braking * left)), STEER * error, STEP)
+        yield drive.speed * STEP, abs(drive.turn) * STEP
+    yield from _rest(drive)
+
+
+def _rest(drive: Drive) -> Iterator[Way]:
+    """Let a body that cannot stop at once come to rest."""
+    body = drive.body
+    while (body.max_acceleration and drive.speed) or (body.max_turn_acceleration and drive.turn):
+        drive.step(0.0, 0.0, STEP)
+        yield drive.speed * STEP, abs(drive.turn) * STEP
+
+
+def free_space(arena: Arena, body: Body) -> BaseGeometry:
+    """Give the places of the body's centre.
+
+    Raises
+    ------
+    ArenaError
+        When the body fits nowhere.
+    """
+    region = arena.free_space(body.radius)
+    if region.area < 1e-6:
+        raise ArenaError(
+            f"a body of radius {body.radius:g} m has no free space in arena {arena.name!r}; "
+            "take a smaller one"
+        )
+    return region
+
+
+def random_start(arena: Arena, body: Body, rng: np.random.Generator) -> Pose:
+    """Draw a pose from free space.
+
+    Raises
+    ------
+    ArenaError
+        When the body fits nowhere.
+    """
+    x, y = arena.sample_free(1, body.radius, rng)[0].tolist()
+    return x, y, rng.uniform(-np.pi, np.pi)

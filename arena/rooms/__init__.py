@@ -1,0 +1,1 @@
+"""Rooms: walls, solids, materials, light, and the file that describes them."""

@@ -1,0 +1,1 @@
+"""Smell: odours diffusing around walls, and the noisy nose that samples them."""

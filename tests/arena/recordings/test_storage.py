@@ -1,0 +1,72 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from arena.errors import ArenaError
+from arena.recordings import storage
+from arena.recordings.sharding import shards
+
+
+def interrupted(path: Path) -> None:
+    with storage.new_folder(path) as folder:
+        (folder / "data").write_text("1")
+        raise KeyboardInterrupt
+
+
+def overtaken(path: Path) -> None:
+    with storage.new_folder(path):
+        path.mkdir()
+        (path / "mine").write_text("mine")
+
+
+def test_new_folder_appears_whole_or_not_at_all(tmp_path: Path) -> None:
+    with storage.new_folder(tmp_path / "deep" / "x") as folder:
+        assert folder.parent == tmp_path / "deep"
+        assert not (tmp_path / "deep" / "x").exists()
+        (folder / "data").write_text("1")
+    assert (tmp_path / "deep" / "x" / "data").read_text() == "1"
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(tmp_path / "y")
+    assert [path.name for path in tmp_path.iterdir()] == ["deep"]
+
+
+def test_what_came_in_between_is_not_overwritten(tmp_path: Path) -> None:
+    with pytest.raises(ArenaError, match="cannot write"):
+        overtaken(tmp_path / "x")
+    assert [path.name for path in tmp_path.rglob("*")] == ["x", "mine"]
+
+
+def laid_out(folder: Path, count: int) -> None:
+    columns = {"odours": np.ones((count, 2), np.float32), "times": np.arange(float(count))}
+    storage.lay_out(folder, (count, 2, 3, 3), columns, {"seed": 1})
+
+
+def test_what_is_missing_is_known_and_can_be_written(tmp_path: Path) -> None:
+    laid_out(tmp_path / "x", 600)
+    images = np.random.default_rng(0).integers(0, 256, (600, 2, 3, 3), dtype=np.uint8)
+    first, second, third = shards(600)
+    assert storage.load(tmp_path / "x").missing == [first, second, third]
+    with storage.writable_views(tmp_path / "x") as views:
+        views[second] = images[second]
+    stored = storage.load(tmp_path / "x")
+    assert stored.missing == [first, third]
+    assert stored.attributes == {"seed": 1, "version": 2}
+    with storage.writable_views(tmp_path / "x") as views:
+        for rows in stored.missing:
+            views[rows] = images[rows]
+    stored = storage.load(tmp_path / "x")
+    assert stored.missing == []
+    np.testing.assert_array_equal(stored.views[:], images)
+
+
+@pytest.mark.parametrize("chosen", [[], [599], [3, 300, 3, 255, 256], list(range(600))])
+def test_reading_by_index(tmp_path: Path, chosen: list[int]) -> None:
+    laid_out(tmp_path / "x", 600)
+    images = np.random.default_rng(0).integers(0, 256, (600, 2, 3, 3), dtype=np.uint8)
+    with storage.writable_views(tmp_path / "x") as views:
+        for rows in shards(600):
+            views[rows] = images[rows]
+    index = np.array(chosen, dtype=int)
+    stored = storage.load(tmp_path / "x")
+    np.testing.assert_array_equal(storage.read(stored.views, index), images[index])
