@@ -9,7 +9,7 @@ import torch
 from benchmarks.timing import ROOM, Figures, missing, one_core, poses, rate, seconds, versus
 from cogmap.cells import heading_statistics, place_statistics
 from cogmap.threads import one_thread
-from neurons.place_cells import PEAK, PlaceCells
+from neurons.layers.place_cells import PEAK, PlaceCells
 
 CELLS = 1000
 POSITIONS = 10_000

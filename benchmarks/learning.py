@@ -10,8 +10,8 @@ from benchmarks.timing import ROOM, Figures, poses
 from cogmap import CognitiveMap
 from cogmap.experiments.slow_features import slow_cells
 from cogmap.threads import one_thread
-from neurons.oja import Sanger
-from neurons.retina import Retina
+from neurons.layers.retina import Retina
+from neurons.layers.sanger import Sanger
 
 VIEWS = 4000
 WALKED = 17_000

@@ -13,7 +13,7 @@ import numpy as np
 from arena import Brownian, Camera, Recording, explore
 from benchmarks.timing import ROOM, Figures
 from cogmap import CognitiveMap
-from cogmap.layers import STAGES
+from neurons.network import STAGES
 
 VIEWS = 200_000
 WALKED = 17_000

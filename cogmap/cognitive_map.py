@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +19,12 @@ from tqdm import tqdm
 from cogmap.activity import Activity
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_views, checked_count, log_odours
-from cogmap.layers import EPOCHS, IN_ORDER, Layers
-from cogmap.merging import forked, merge
 from cogmap.storage import read_map, write_map
 from cogmap.threads import one_thread
-from neurons.retina import Retina
+from neurons.errors import NeuronsError
+from neurons.layers.retina import Retina
+from neurons.merging import forked, merge
+from neurons.network import EPOCHS, IN_ORDER, Layers
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same map."""
@@ -135,8 +137,8 @@ class CognitiveMap:
     def partial_fit(self, views: Any, odours: ArrayLike, *, jump: bool = False) -> CognitiveMap:
         """Learn from the next views of a stream.
 
-        Time and memory per view do not depend on how many came before. See `cogmap.layers.Layers` for what is
-        learnt when.
+        Time and memory per view do not depend on how many came before. See `neurons.network.Layers` for what
+        is learnt when.
 
         Parameters
         ----------
@@ -163,7 +165,7 @@ class CognitiveMap:
         """Give another explorer a map of the same charts, which has learnt nothing yet in the present stage.
 
         So what it learns is not what this one has learnt already, and `merge` adds it. Stages whose work can
-        be shared in this way are those of `cogmap.merging.SUMS`: olfaction, gauge and afferents.
+        be shared in this way are those of `neurons.merging.SUMS`: olfaction, gauge and afferents.
 
         Raises
         ------
@@ -174,7 +176,7 @@ class CognitiveMap:
         other = CognitiveMap(**self._settings())
         other._retina, other.view_shape_, other.odorants_ = self._retina, self.view_shape_, self.odorants_
         other.seconds_ = {}
-        with one_thread():
+        with one_thread(), _at_the_edge():
             other._layers = forked(self._layers)
         return other
 
@@ -203,7 +205,7 @@ class CognitiveMap:
         """
         self._check_grown()
         other._check_grown()
-        with one_thread():
+        with one_thread(), _at_the_edge():
             merge(self._layers, other._layers)
         return self
 
@@ -359,3 +361,12 @@ class CognitiveMap:
             odour=odours.numpy(),
             position=self._layers.gauge(self._layers.place, odours).position.numpy(),
         )
+
+
+@contextmanager
+def _at_the_edge() -> Iterator[None]:
+    """Refuse in the same words what the layers refuse."""
+    try:
+        yield
+    except NeuronsError as error:
+        raise CogmapError(str(error)) from None

@@ -17,7 +17,7 @@ from cogmap.experiments.setting import Setting, poses_of
 from cogmap.manifold import Betti, betti, motion_distances, nearest_points
 from cogmap.plots import plot_barcodes, plot_confusion, plot_views
 from cogmap.threads import one_thread
-from neurons.retina import Retina
+from neurons.layers.retina import Retina
 
 ROOMS = {"white": "white_rectangle", "blue_wall": "blue_wall"}
 QUERIES = 2000

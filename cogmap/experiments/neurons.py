@@ -19,7 +19,7 @@ from cogmap.experiments.result import Result
 from cogmap.experiments.setting import Setting, poses_of
 from cogmap.experiments.surgery import afferent_weights, newborn, silenced, weights_of
 from cogmap.plots import plot_afferents, plot_courses
-from neurons.heading_cells import HeadDirectionCells
+from neurons.layers.heading_cells import HeadDirectionCells
 
 SEEN = (30, 100, 300, 1000, 3000, 10_000)
 """Views after which the cells are measured, and after the last one."""

@@ -26,10 +26,10 @@ from cogmap.cells import (
 from cogmap.cells.correlations import correlations
 from cogmap.cognitive_map import BATCH, CognitiveMap
 from cogmap.experiments.setting import Setting
-from cogmap.layers import EPOCHS
 from cogmap.plots import Tuning
 from cogmap.threads import one_thread
-from neurons.place_cells import PlaceCells
+from neurons.layers.place_cells import PlaceCells
+from neurons.network import EPOCHS
 
 CELLS = 150
 """In a population that competes for something; as many as a map has place cells."""

@@ -27,8 +27,8 @@ def sources(setting: Setting) -> Result:
 
     With few sources a smell can mean several places. `position_median_m` is read from the recalled odour,
     which stays ambiguous; `place_position_median_m` from the rates of the place cells by the same decoder:
-    each of them keeps to one place (`neurons.ambiguity`). `single_field` is the share of place cells with
-    exactly one field.
+    each of them keeps to one place (`neurons.atlas.disambiguation`). `single_field` is the share of place
+    cells with exactly one field.
     """
     camera = Camera.panoramic()
     walk = setting.explore(Brownian(), camera)

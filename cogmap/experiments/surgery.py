@@ -13,7 +13,7 @@ from torch import Tensor
 
 from cogmap.cognitive_map import CognitiveMap
 from cogmap.storage import read_map, write_map
-from neurons.afferents import Afferents
+from neurons.layers.afferents import Afferents
 
 FAR = 1e6
 """Where a silent chart has its centre along every component: no view comes near it."""

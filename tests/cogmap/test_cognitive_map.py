@@ -11,8 +11,10 @@ import torch
 
 from arena import Arena, Brownian, Camera, Recording, explore
 from cogmap import Activity, CogmapError, CognitiveMap, score
-from cogmap.layers import EPOCHS, IN_ORDER
+from neurons.merging import SUMS
+from neurons.network import EPOCHS, IN_ORDER
 
+SHARED = 2000
 GAUGE_BEGINS = sum(list(EPOCHS.values())[: list(EPOCHS).index(IN_ORDER)])
 Grow = Callable[..., CognitiveMap]
 
@@ -200,3 +202,63 @@ def test_bad_input_is_refused(walk: Recording, cmap: CognitiveMap) -> None:
         cmap.perceive()
     with pytest.raises(CogmapError, match="learnt nothing"):
         CognitiveMap().perceive(views)
+
+
+def grown(walk: Recording, *, split: int | None, folder: Path) -> CognitiveMap:
+    """Learn epoch after epoch, by two explorers from `split` on in stages whose work can be shared."""
+    cmap = CognitiveMap(charts=400, components=20, epoch=SHARED)
+    order = np.random.default_rng(0)
+    for stage, epochs in EPOCHS.items():
+        for _ in range(epochs):
+            rows = np.arange(SHARED) if stage == IN_ORDER else order.permutation(SHARED)
+            if stage not in SUMS:
+                cmap.partial_fit(walk.views[rows], walk.odours[rows])
+                continue
+            here, there = np.split(rows, [SHARED // 2 if split is None else split])
+            if split is None:
+                cmap.partial_fit(walk.views[here], walk.odours[here], jump=True)
+                cmap.partial_fit(walk.views[there], walk.odours[there], jump=True)
+            else:
+                cmap.fork().save(folder / stage)
+                away = CognitiveMap.load(folder / stage)
+                cmap.partial_fit(walk.views[here], walk.odours[here], jump=True)
+                away.partial_fit(walk.views[there], walk.odours[there], jump=True)
+                assert cmap.merge(away) is cmap
+    return cmap
+
+
+def test_two_explorers_are_as_good_as_one(camera: Camera, tmp_path: Path) -> None:
+    walk = explore(Arena.load("open_field"), Brownian(), camera, views=SHARED, seed=0)
+    whole, merged = (grown(walk, split=split, folder=tmp_path) for split in (None, SHARED // 2))
+    assert whole.trusted_
+    assert merged.trusted_
+    seen = [each.perceive(walk.views) for each in (whole, merged)]
+    for name, scale in {"odour": 1, "place": 20, "heading": 20, "position": 1}.items():
+        one, other = (getattr(activity, name) for activity in seen)
+        np.testing.assert_allclose(other, one, atol=1e-5 * scale, rtol=1e-5, err_msg=name)
+    turned = np.exp(1j * (seen[1].phase - seen[0].phase))
+    np.testing.assert_allclose(turned, np.ones(SHARED), atol=1e-5)
+
+
+def test_a_grown_map_goes_on_with_what_others_see(walk: Recording, cmap: CognitiveMap) -> None:
+    alone, away = copy.deepcopy(cmap), cmap.fork()
+    alone.partial_fit(walk.views[:600], walk.odours[:600])
+    away.partial_fit(walk.views[:600], walk.odours[:600])
+    joined = copy.deepcopy(cmap).merge(away)
+    for name in ("place", "heading"):
+        one, other = (getattr(each.perceive(walk.views[:300]), name) for each in (alone, joined))
+        np.testing.assert_allclose(other, one, atol=2e-4)
+    with pytest.raises(CogmapError, match="learnt nothing"):
+        copy.deepcopy(cmap).merge(CognitiveMap())
+    with pytest.raises(CogmapError, match="learnt nothing"):
+        CognitiveMap().fork()
+
+
+def test_what_the_layers_refuse_the_map_refuses_in_the_same_words(
+    walk: Recording, cmap: CognitiveMap
+) -> None:
+    young = CognitiveMap(charts=30, components=20).partial_fit(walk.views[:50], walk.odours[:50])
+    with pytest.raises(CogmapError, match="'code' stage, in which units compete"):
+        young.fork()
+    with pytest.raises(CogmapError, match="differ in views, odorants"):
+        copy.deepcopy(cmap).merge(young)

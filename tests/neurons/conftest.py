@@ -5,7 +5,7 @@ import torch
 from threadpoolctl import threadpool_limits
 from torch import Tensor
 
-from neurons.charts import Charts
+from neurons.layers.charts import Charts
 
 Codes = Callable[[Tensor], Tensor]
 

@@ -5,7 +5,7 @@ import torch
 from arena import Recording
 from cogmap import CognitiveMap
 from cogmap.experiments.surgery import afferent_weights, newborn, operated, silenced, weights_of
-from neurons.recall import Excited
+from neurons.layers.readout import Excited
 
 
 def test_nothing_changed_is_the_same_map(cmap: CognitiveMap, walk: Recording) -> None:

@@ -6,9 +6,9 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from neurons.afferents import Afferents
-from neurons.ambiguity import branches
-from neurons.recall import Excited
+from neurons.atlas.disambiguation import branches
+from neurons.layers.afferents import Afferents
+from neurons.layers.readout import Excited
 
 PEAK = 20.0
 """Rate of a cell at the middle of its field, Hz."""

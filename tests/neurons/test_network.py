@@ -1,7 +1,7 @@
 import pytest
 import torch
 
-from cogmap.layers import EPOCHS, STAGES, WINNERS, Layers
+from neurons.network import EPOCHS, STAGES, WINNERS, Layers
 
 EPOCH = 400
 

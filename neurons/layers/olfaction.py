@@ -4,7 +4,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from neurons.charts import DIMENSIONS
+from neurons.layers.charts import DIMENSIONS
 
 RIDGE = 1e-3
 """Prior on the slopes, as a fraction of the variance of the coordinates."""

@@ -4,7 +4,7 @@ import torch
 from sklearn.neighbors import NearestNeighbors
 from torch import Tensor
 
-from neurons.atlas import OVERLAPS, POOL, Atlas
+from neurons.atlas.atlas import OVERLAPS, POOL, Atlas
 
 
 @pytest.fixture

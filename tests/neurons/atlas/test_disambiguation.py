@@ -2,8 +2,8 @@ import pytest
 import torch
 from torch import Tensor
 
-from neurons.ambiguity import branches
-from neurons.atlas import Atlas
+from neurons.atlas.atlas import Atlas
+from neurons.atlas.disambiguation import branches
 
 FIRST, SECOND = torch.tensor([-1.0, 0.0]), torch.tensor([1.0, 0.0])
 

@@ -4,7 +4,7 @@ import torch
 from scipy.stats import multivariate_normal
 from torch import Tensor
 
-from neurons.place_cells import BLOCK, FLATNESS, PEAK, PlaceCells
+from neurons.layers.place_cells import BLOCK, FLATNESS, PEAK, PlaceCells
 
 
 def smells(count: int, stretch: tuple[float, float] = (1.0, 1.0), seed: int = 0) -> Tensor:

@@ -4,7 +4,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor
 
-from neurons.atlas import Atlas
+from neurons.atlas.atlas import Atlas
 
 
 def heading_axes(

@@ -6,7 +6,7 @@ import torch
 from jaxtyping import Bool, Complex, Float
 from torch import Tensor, nn
 
-from neurons.place_cells import PlaceCells
+from neurons.layers.place_cells import PlaceCells
 
 LAG = 3
 """Steps from view to view in a displacement: long against the error of recall, short against the room."""

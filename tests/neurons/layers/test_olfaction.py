@@ -4,7 +4,7 @@ import torch
 from sklearn.linear_model import Ridge
 from torch import Tensor
 
-from neurons.olfaction import RIDGE, Olfaction
+from neurons.layers.olfaction import RIDGE, Olfaction
 
 CHARTS, ODORANTS, VIEWS = 6, 5, 900
 Batch = tuple[Tensor, Tensor, Tensor, Tensor]

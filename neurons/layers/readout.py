@@ -6,9 +6,9 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from neurons.atlas import Atlas
-from neurons.charts import DIMENSIONS, Charts
-from neurons.synchronisation import Compass
+from neurons.atlas.atlas import Atlas
+from neurons.atlas.synchronisation import Compass
+from neurons.layers.charts import DIMENSIONS, Charts
 
 WINNERS = 8
 """Charts that speak for a view."""

@@ -6,8 +6,8 @@ import torch
 from sklearn.linear_model import Ridge
 from torch import Tensor
 
-from neurons.gauge import BLOCK, LAG, RIDGE, STRAIGHT, Gauge, _patches
-from neurons.place_cells import PlaceCells
+from neurons.atlas.metric_map import BLOCK, LAG, RIDGE, STRAIGHT, Gauge, _patches
+from neurons.layers.place_cells import PlaceCells
 
 SOURCES = torch.tensor([[-0.2, -0.1], [1.2, 0.1], [0.4, 1.3]])
 STEP = 0.05

@@ -4,8 +4,8 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from neurons.afferents import Afferents
-from neurons.place_cells import PEAK
+from neurons.layers.afferents import Afferents
+from neurons.layers.place_cells import PEAK
 
 CONCENTRATION = 5.0
 """κ of the von Mises tuning: a full width at half height of 61°."""

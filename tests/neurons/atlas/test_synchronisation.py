@@ -6,10 +6,10 @@ import torch
 from scipy.optimize import minimize_scalar
 from torch import Tensor
 
-from neurons.atlas import Atlas
-from neurons.charts import Charts
+from neurons.atlas.atlas import Atlas
+from neurons.atlas.synchronisation import Compass, synchronise
 from neurons.errors import NeuronsError
-from neurons.synchronisation import Compass, synchronise
+from neurons.layers.charts import Charts
 
 Tiling = tuple[Tensor, Charts]
 

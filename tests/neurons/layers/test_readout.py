@@ -5,10 +5,10 @@ import pytest
 import torch
 from torch import Tensor
 
-from neurons.atlas import Atlas
-from neurons.charts import Charts
-from neurons.recall import BREADTH, Recall
-from neurons.synchronisation import Compass
+from neurons.atlas.atlas import Atlas
+from neurons.atlas.synchronisation import Compass
+from neurons.layers.charts import Charts
+from neurons.layers.readout import BREADTH, Recall
 
 SLOPES = torch.tensor([[1.0, -0.5, 2.0], [0.3, 1.5, -1.0]])
 OFFSETS = torch.tensor([0.5, -2.0, 1.0])

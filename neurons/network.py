@@ -9,18 +9,18 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from neurons.afferents import Afferents
-from neurons.atlas import Atlas
-from neurons.charts import Charts
+from neurons.atlas.atlas import Atlas
+from neurons.atlas.heading_axis import heading_axes
+from neurons.atlas.metric_map import Gauge
+from neurons.atlas.synchronisation import synchronise
 from neurons.errors import NeuronsError
-from neurons.gauge import Gauge
-from neurons.heading_axis import heading_axes
-from neurons.heading_cells import HeadDirectionCells
-from neurons.oja import Sanger
-from neurons.olfaction import Olfaction
-from neurons.place_cells import PlaceCells
-from neurons.recall import Recall
-from neurons.synchronisation import synchronise
+from neurons.layers.afferents import Afferents
+from neurons.layers.charts import Charts
+from neurons.layers.heading_cells import HeadDirectionCells
+from neurons.layers.olfaction import Olfaction
+from neurons.layers.place_cells import PlaceCells
+from neurons.layers.readout import Recall
+from neurons.layers.sanger import Sanger
 
 EPOCHS = {"code": 4, "charts": 6, "olfaction": 1, "cells": 2, "gauge": 1, "afferents": 1}
 """Stages of development, in order, and how many epochs of views each lasts."""

@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.sparse.linalg import eigsh
 from torch import Tensor
 
-from neurons.atlas import Atlas
+from neurons.atlas.atlas import Atlas
 from neurons.errors import NeuronsError
 
 CELLS = 250

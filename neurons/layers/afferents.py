@@ -4,7 +4,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from neurons.recall import Excited
+from neurons.layers.readout import Excited
 
 
 class Afferents(nn.Module):

@@ -3,8 +3,8 @@ import pytest
 import torch
 from torch import Tensor
 
-from neurons.afferents import Afferents
-from neurons.recall import Excited
+from neurons.layers.afferents import Afferents
+from neurons.layers.readout import Excited
 
 CHARTS, CELLS, VIEWS = 30, 7, 400
 

@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter1d
 from torch import Tensor
 
 from neurons.errors import NeuronsError
-from neurons.retina import Retina
+from neurons.layers.retina import Retina
 
 
 def scenes(count: int, height: int, width: int, seed: int = 0) -> Tensor:

@@ -6,8 +6,8 @@ from copy import deepcopy
 
 import torch
 
-from cogmap.errors import CogmapError
-from cogmap.layers import EPOCHS, STAGES, Layers
+from neurons.errors import NeuronsError
+from neurons.network import EPOCHS, STAGES, Layers
 
 SUMS = {
     "olfaction": ("olfaction.gram", "olfaction.cross"),
@@ -29,7 +29,7 @@ def forked(layers: Layers) -> Layers:
 
     Raises
     ------
-    CogmapError
+    NeuronsError
         In a stage that learns no sums.
     """
     layers.mature()
@@ -49,7 +49,7 @@ def merge(layers: Layers, other: Layers) -> None:
 
     Raises
     ------
-    CogmapError
+    NeuronsError
         When they differ in anything but these sums.
     """
     if layers.stage == STAGES[int(other.matured)]:
@@ -70,7 +70,7 @@ def _shared_stage(layers: Layers) -> str:
     """Give the stage that layers are in, if its work can be shared."""
     stage = STAGES[int(layers.matured)]
     if stage not in SUMS:
-        raise CogmapError(
+        raise NeuronsError(
             f"this map is in its {stage!r} stage, in which units compete for one view after the other; "
             f"maps share the work in {', '.join(map(repr, SUMS))}: show it more views first"
         )
@@ -80,11 +80,11 @@ def _shared_stage(layers: Layers) -> str:
 def _check_kin(layers: Layers, other: Layers, stage: str) -> None:
     mine, its = layers.state_dict(), other.state_dict()
     if layers.epoch != other.epoch or any(mine[name].shape != its[name].shape for name in mine):
-        raise CogmapError(
+        raise NeuronsError(
             "these maps differ in views, odorants, charts, components, cells or epoch; merge forks of one map"
         )
     if other.matured != layers.matured:
-        raise CogmapError(
+        raise NeuronsError(
             f"this map is in its {stage!r} stage and the other in its {STAGES[int(other.matured)]!r} stage; "
             "merge them before either leaves the stage in which they parted"
         )
@@ -92,6 +92,6 @@ def _check_kin(layers: Layers, other: Layers, stage: str) -> None:
         if name in (*SUMS[stage], *OWN):
             continue
         if not torch.equal(mine[name].nan_to_num(), its[name].nan_to_num()):
-            raise CogmapError(
+            raise NeuronsError(
                 f"these maps were not grown from the same charts: {name} differs; merge forks of one map"
             )

@@ -4,8 +4,8 @@ import torch
 from scipy.stats import vonmises
 from torch import Tensor
 
-from neurons.heading_cells import CONCENTRATION, HeadDirectionCells
-from neurons.place_cells import PEAK
+from neurons.layers.heading_cells import CONCENTRATION, HeadDirectionCells
+from neurons.layers.place_cells import PEAK
 
 
 def blank(cells: int, seed: int = 0) -> HeadDirectionCells:

@@ -5,9 +5,9 @@ import pytest
 import torch
 from torch import Tensor
 
-from neurons.atlas import Atlas
-from neurons.charts import Charts
-from neurons.heading_axis import heading_axes
+from neurons.atlas.atlas import Atlas
+from neurons.atlas.heading_axis import heading_axes
+from neurons.layers.charts import Charts
 
 SOURCES = torch.tensor([[-0.3, 0.2], [0.6, 1.4], [1.2, -0.4]])
 Tiling = tuple[Tensor, Charts]

@@ -23,8 +23,8 @@ class Charts(nn.Module):
 
     A view z excites its m nearest centres. The centre of rank r learns with h = exp(−2 r / m): C_k moves to
     the running mean of h z, and U_k follows Sanger's rule on the residuals z − C_k, normalised by their
-    variance as in `neurons.oja.Sanger`. `freeze` makes the tangents orthonormal; after it nothing here
-    changes any more.
+    variance as in `neurons.layers.sanger.Sanger`. `freeze` makes the tangents orthonormal; after it
+    nothing here changes any more.
 
     Parameters
     ----------

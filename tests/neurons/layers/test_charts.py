@@ -5,7 +5,7 @@ from scipy.linalg import subspace_angles
 from sklearn.neighbors import NearestNeighbors
 from torch import Tensor
 
-from neurons.charts import Charts
+from neurons.layers.charts import Charts
 
 
 def manifold(views: int, seed: int = 0) -> Tensor:

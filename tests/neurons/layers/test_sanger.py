@@ -3,7 +3,7 @@ import pytest
 import torch
 from torch import Tensor
 
-from neurons.oja import Sanger
+from neurons.layers.sanger import Sanger
 
 FEATURES, COMPONENTS = 200, 12
 

@@ -1,19 +1,16 @@
 from copy import deepcopy
-from pathlib import Path
 
-import numpy as np
 import pytest
 import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import Tensor
 
-from arena import Arena, Brownian, Camera, Recording, explore
-from cogmap import CogmapError, CognitiveMap
-from cogmap.layers import EPOCHS, IN_ORDER, STAGES, Layers
-from cogmap.merging import OWN, SUMS, forked, merge
+from neurons.errors import NeuronsError
+from neurons.merging import OWN, SUMS, forked, merge
+from neurons.network import EPOCHS, STAGES, Layers
 
-EPOCH, VIEWS = 400, 2000
+EPOCH = 400
 Views = tuple[Tensor, Tensor]
 
 
@@ -140,20 +137,20 @@ def test_many_views_end_a_stage_but_no_other(begun: dict[str, Layers]) -> None:
 
 def test_what_cannot_be_added_up_is_refused(begun: dict[str, Layers]) -> None:
     for stage in set(STAGES) - set(SUMS):
-        with pytest.raises(CogmapError, match=f"'{stage}' stage, in which units compete"):
+        with pytest.raises(NeuronsError, match=f"'{stage}' stage, in which units compete"):
             forked(begun[stage])
-        with pytest.raises(CogmapError, match="units compete"):
+        with pytest.raises(NeuronsError, match="units compete"):
             merge(deepcopy(begun[stage]), begun[stage])
     smelling = deepcopy(begun["olfaction"])
-    with pytest.raises(CogmapError, match="'olfaction' stage and the other in its 'gauge'"):
+    with pytest.raises(NeuronsError, match="'olfaction' stage and the other in its 'gauge'"):
         merge(smelling, begun["gauge"])
     for sizes in ({"charts": 61}, {"place_cells": 11}, {"epoch": 401}):
-        with pytest.raises(CogmapError, match="differ in views, odorants"):
+        with pytest.raises(NeuronsError, match="differ in views, odorants"):
             merge(deepcopy(smelling), young(**sizes))
     for name in ("charts.centres", "code.weight", "recall.spacing"):
         other = deepcopy(smelling)
         other.get_buffer(name)[-1].mul_(1.001)
-        with pytest.raises(CogmapError, match=f"same charts: {name} differs"):
+        with pytest.raises(NeuronsError, match=f"same charts: {name} differs"):
             merge(smelling, other)
     assert not differing(smelling, begun["olfaction"])
 
@@ -166,53 +163,3 @@ def test_copies_made_where_a_stage_begins_merge_with_or_without_views(begun: dic
     idle = deepcopy(fresh)
     merge(idle, other)
     assert differing(idle, other) <= {"gauge.recent"}
-
-
-def grown(walk: Recording, *, split: int | None, folder: Path) -> CognitiveMap:
-    """Learn epoch after epoch, by two explorers from `split` on in stages whose work can be shared."""
-    cmap = CognitiveMap(charts=400, components=20, epoch=VIEWS)
-    order = np.random.default_rng(0)
-    for stage, epochs in EPOCHS.items():
-        for _ in range(epochs):
-            rows = np.arange(VIEWS) if stage == IN_ORDER else order.permutation(VIEWS)
-            if stage not in SUMS:
-                cmap.partial_fit(walk.views[rows], walk.odours[rows])
-                continue
-            here, there = np.split(rows, [VIEWS // 2 if split is None else split])
-            if split is None:
-                cmap.partial_fit(walk.views[here], walk.odours[here], jump=True)
-                cmap.partial_fit(walk.views[there], walk.odours[there], jump=True)
-            else:
-                cmap.fork().save(folder / stage)
-                away = CognitiveMap.load(folder / stage)
-                cmap.partial_fit(walk.views[here], walk.odours[here], jump=True)
-                away.partial_fit(walk.views[there], walk.odours[there], jump=True)
-                assert cmap.merge(away) is cmap
-    return cmap
-
-
-def test_two_explorers_are_as_good_as_one(camera: Camera, tmp_path: Path) -> None:
-    walk = explore(Arena.load("open_field"), Brownian(), camera, views=VIEWS, seed=0)
-    whole, merged = (grown(walk, split=split, folder=tmp_path) for split in (None, VIEWS // 2))
-    assert whole.trusted_
-    assert merged.trusted_
-    seen = [each.perceive(walk.views) for each in (whole, merged)]
-    for name, scale in {"odour": 1, "place": 20, "heading": 20, "position": 1}.items():
-        one, other = (getattr(activity, name) for activity in seen)
-        np.testing.assert_allclose(other, one, atol=1e-5 * scale, rtol=1e-5, err_msg=name)
-    turned = np.exp(1j * (seen[1].phase - seen[0].phase))
-    np.testing.assert_allclose(turned, np.ones(VIEWS), atol=1e-5)
-
-
-def test_a_grown_map_goes_on_with_what_others_see(walk: Recording, cmap: CognitiveMap) -> None:
-    alone, away = deepcopy(cmap), cmap.fork()
-    alone.partial_fit(walk.views[:600], walk.odours[:600])
-    away.partial_fit(walk.views[:600], walk.odours[:600])
-    joined = deepcopy(cmap).merge(away)
-    for name in ("place", "heading"):
-        one, other = (getattr(each.perceive(walk.views[:300]), name) for each in (alone, joined))
-        np.testing.assert_allclose(other, one, atol=2e-4)
-    with pytest.raises(CogmapError, match="learnt nothing"):
-        deepcopy(cmap).merge(CognitiveMap())
-    with pytest.raises(CogmapError, match="learnt nothing"):
-        CognitiveMap().fork()

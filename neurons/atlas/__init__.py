@@ -1,0 +1,1 @@
+"""What the charts agree on: neighbourhoods, heading axes, a compass, a metric map."""
