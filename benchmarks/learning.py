@@ -8,7 +8,7 @@ from sklearn.decomposition import PCA, IncrementalPCA
 from arena import Brownian, Camera, explore
 from benchmarks.timing import ROOM, Figures, poses
 from cogmap import CognitiveMap
-from cogmap.experiments.slow_features import slow_cells
+from cogmap.evaluation.peers.slow_features import slow_cells
 from cogmap.threads import one_thread
 from neurons.layers.retina import Retina
 from neurons.layers.sanger import Sanger

@@ -16,7 +16,8 @@ from scipy.spatial.distance import cdist
 
 from arena import Arena, Brownian, Camera, explore
 from benchmarks.timing import Figures
-from cogmap.manifold import BagOfWords, neighbour_graph
+from cogmap.features import BagOfWords
+from cogmap.graph import neighbour_graph
 from cogmap.threads import one_thread
 
 VIEWS = 17_000
@@ -44,7 +45,7 @@ print(json.dumps([seconds, 1024 * int(peak)]))
 that of its parent); a small fit comes first, which loads what loads late."""
 MODELS = {
     "landmark": (
-        "from cogmap.manifold import LandmarkIsomap",
+        "from cogmap.shape import LandmarkIsomap",
         f"LandmarkIsomap({COMPONENTS}, metric='cosine')",
     ),
     "sklearn": (

@@ -7,9 +7,9 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from benchmarks.timing import Figures
-from cogmap.experiments.catalogue import EXPERIMENTS, Experiment
+from cogmap.experiments.conditions import Setting
+from cogmap.experiments.registry import EXPERIMENTS, Experiment
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import Setting
 from cogmap.sweeps import Plan, sweep
 
 SECONDS, WORKERS, POINTS = 2.0, 2, 48

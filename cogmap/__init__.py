@@ -1,12 +1,13 @@
 """The cognitive map, its uses and its measures."""
 
-from cogmap import cells, manifold, navigation, plots
-from cogmap.activity import Activity
-from cogmap.cognitive_map import CognitiveMap
+from cogmap import cells, features, graph, navigation, plots, shape
 from cogmap.errors import CogmapError
-from cogmap.manifold import BagOfWords, Betti, LandmarkIsomap, betti
+from cogmap.evaluation.scoring import score
+from cogmap.features import BagOfWords
+from cogmap.map.activity import Activity
+from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.navigation import Localiser, VisualRoadmap
-from cogmap.scoring import score
+from cogmap.shape import Betti, LandmarkIsomap, betti
 from cogmap.sweeps import Plan, sweep
 
 __all__ = [
@@ -21,9 +22,11 @@ __all__ = [
     "VisualRoadmap",
     "betti",
     "cells",
-    "manifold",
+    "features",
+    "graph",
     "navigation",
     "plots",
     "score",
+    "shape",
     "sweep",
 ]

@@ -11,11 +11,11 @@ import numpy as np
 from jaxtyping import Float
 
 from arena import Recording
+from cogmap.atomic import check_absent, whole
 from cogmap.cells import poisson_spikes
-from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
 from cogmap.inputs import checked_count
-from cogmap.writing import check_absent, whole
+from cogmap.map.cognitive_map import CognitiveMap
 
 START = datetime(2000, 1, 1, tzinfo=UTC)
 """When a simulated session begins: the format asks for a date, and there is none."""

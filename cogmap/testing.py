@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Num
 
-from cogmap.manifold.homology import Metric, betti
+from cogmap.shape.homology import Metric, betti
 
 
 def assert_betti(

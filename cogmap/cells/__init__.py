@@ -4,10 +4,8 @@ All take samples: one row per view, each view one unit of occupancy; rates in Hz
 in rad.
 """
 
-from cogmap.cells.bayes import poisson_posterior
-from cogmap.cells.bins import BinEdges, bin_edges, heading_centres
-from cogmap.cells.coherence import coherence
-from cogmap.cells.decoding import (
+from cogmap.cells.decoding.bayes import poisson_posterior
+from cogmap.cells.decoding.decoders import (
     HeadingFrame,
     MapFrame,
     decode_positions,
@@ -18,17 +16,19 @@ from cogmap.cells.decoding import (
     place_map,
     position_errors,
 )
-from cogmap.cells.fields import PlaceFields, place_coverage, place_fields
-from cogmap.cells.heading import heading_statistics
-from cogmap.cells.information import selectivity, sparsity, spatial_information
-from cogmap.cells.maps import RateMaps, rate_maps
-from cogmap.cells.patterns import pattern_correlations, population_vector_correlations
-from cogmap.cells.place import place_statistics
-from cogmap.cells.rayleigh import RayleighTest, rayleigh_test
-from cogmap.cells.shuffling import ShuffleTest, shuffle_test
-from cogmap.cells.spikes import poisson_spikes
-from cogmap.cells.stability import curve_stability, map_stability
-from cogmap.cells.tuning import mean_vectors, tuning_curves, tuning_widths
+from cogmap.cells.decoding.patterns import pattern_correlations, population_vector_correlations
+from cogmap.cells.measures.coherence import coherence
+from cogmap.cells.measures.fields import PlaceFields, place_coverage, place_fields
+from cogmap.cells.measures.heading import heading_statistics
+from cogmap.cells.measures.information import selectivity, sparsity, spatial_information
+from cogmap.cells.measures.place import place_statistics
+from cogmap.cells.measures.rayleigh import RayleighTest, rayleigh_test
+from cogmap.cells.measures.stability import curve_stability, map_stability
+from cogmap.cells.rates.bins import BinEdges, bin_edges, heading_centres
+from cogmap.cells.rates.maps import RateMaps, rate_maps
+from cogmap.cells.rates.shuffling import ShuffleTest, shuffle_test
+from cogmap.cells.rates.spikes import poisson_spikes
+from cogmap.cells.rates.tuning import mean_vectors, tuning_curves, tuning_widths
 
 __all__ = [
     "BinEdges",

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from arena import Recording
-from cogmap.cognitive_map import CognitiveMap
+from cogmap.atomic import check_absent
 from cogmap.commands.app import Json, Seed, app, tell, with_truth
+from cogmap.evaluation.scoring import score
 from cogmap.export import export_nwb
-from cogmap.scoring import score
-from cogmap.writing import check_absent
+from cogmap.map.cognitive_map import CognitiveMap
 
 
 @app.command(name="learn")

@@ -10,9 +10,9 @@ from cyclopts import Parameter
 
 from arena import Arena
 from cogmap.commands.app import Json, Seed, app, tell
-from cogmap.experiments.catalogue import experiment
 from cogmap.experiments.demo import demo
-from cogmap.reporting import report
+from cogmap.experiments.registry import experiment
+from cogmap.pages.report import report
 from cogmap.sweeps import Plan, sweep
 
 

@@ -10,10 +10,10 @@ from cyclopts import Parameter
 
 from arena import Arena, Body, Camera, Nose, explore, gallery
 from arena.motions.catalogue import MOTIONS
+from cogmap.atomic import check_absent
 from cogmap.commands.app import Json, Seed, app, save_figure, tell
 from cogmap.errors import CogmapError
 from cogmap.plots import plot_room, plot_sheet
-from cogmap.writing import check_absent
 
 
 @app.command(name="arena")

@@ -16,7 +16,6 @@ import numpy as np
 from jaxtyping import Float
 
 from arena import Arena, Body, Brownian, Camera, Recording, explore
-from cogmap.activity import Activity
 from cogmap.cells import (
     fit_heading_frame,
     fit_map_frame,
@@ -28,15 +27,16 @@ from cogmap.cells import (
     rate_maps,
     tuning_curves,
 )
-from cogmap.cells.decoding import decode_positions
-from cogmap.cognitive_map import CognitiveMap
+from cogmap.cells.decoding.decoders import decode_positions
 from cogmap.errors import CogmapError
-from cogmap.experiments.about import write_about
-from cogmap.experiments.homologies import homologies
+from cogmap.evaluation.homology_of_map import homologies
+from cogmap.evaluation.scoring import score
+from cogmap.experiments.conditions import FRESH, FRESH_SEED, poses_of
 from cogmap.experiments.outputs import METRICS, result_folder
-from cogmap.experiments.setting import FRESH, FRESH_SEED, poses_of
+from cogmap.experiments.provenance import write_about
 from cogmap.inputs import checked_count
-from cogmap.manifold.homology import Betti
+from cogmap.map.activity import Activity
+from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.plots import (
     plot_barcodes,
     plot_compass,
@@ -47,7 +47,7 @@ from cogmap.plots import (
     plot_tuning_curves,
     plot_views,
 )
-from cogmap.scoring import score
+from cogmap.shape.homology import Betti
 
 LANDMARKS = (400, 150)
 """On which loops and voids are measured."""

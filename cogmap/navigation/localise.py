@@ -9,9 +9,9 @@ import scipy.sparse as sp
 from jaxtyping import Float, Int
 
 from cogmap.errors import CogmapError
+from cogmap.graph.knn import Metric, nearest_points
+from cogmap.graph.points import Cloud, checked_cloud
 from cogmap.inputs import checked_count
-from cogmap.manifold.cloud import Cloud, checked_cloud
-from cogmap.manifold.nearest import Metric, nearest_points
 from cogmap.threads import one_thread
 
 BLOCK = 128

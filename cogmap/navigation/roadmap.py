@@ -11,9 +11,9 @@ from scipy.sparse.csgraph import dijkstra
 from sklearn.preprocessing import normalize
 
 from cogmap.errors import CogmapError
-from cogmap.manifold.cloud import Checked, Cloud, checked_cloud
-from cogmap.manifold.nearest import Metric
-from cogmap.manifold.neighbours import Components, components, neighbour_graph
+from cogmap.graph.knn import Metric
+from cogmap.graph.neighbour_graph import Components, components, neighbour_graph
+from cogmap.graph.points import Checked, Cloud, checked_cloud
 
 ONE_SIDED = 5
 """Nearest views that a view is joined to even when it is not among theirs."""

@@ -1,31 +1,31 @@
 """The figures, from results only: arrays in, a matplotlib Figure out."""
 
-from cogmap.plots.afferents import plot_afferents
-from cogmap.plots.barcode_grid import plot_barcode_grid
-from cogmap.plots.barcodes import plot_barcodes
-from cogmap.plots.cases import plot_cases
-from cogmap.plots.cell_types import plot_cell_types
-from cogmap.plots.compass import plot_compass
-from cogmap.plots.confusion import plot_confusion
-from cogmap.plots.courses import plot_courses
-from cogmap.plots.embedding import plot_embedding
-from cogmap.plots.examples import Tuning, plot_examples
-from cogmap.plots.goals import plot_goals
-from cogmap.plots.heading_cells import plot_tuning_curves
-from cogmap.plots.likeness import plot_likeness
-from cogmap.plots.localisation import plot_localisation
-from cogmap.plots.metric_map import plot_metric_map
-from cogmap.plots.neighbours import plot_neighbours
-from cogmap.plots.place_cells import plot_rate_maps
-from cogmap.plots.position import plot_position
-from cogmap.plots.quasi_metric import plot_quasi_metric
-from cogmap.plots.room import plot_room
-from cogmap.plots.routes import plot_routes
-from cogmap.plots.sheet import plot_sheet
-from cogmap.plots.translation import plot_translation
-from cogmap.plots.trends import plot_trend
-from cogmap.plots.views import plot_views
-from cogmap.plots.walk import plot_walk
+from cogmap.plots.cells.afferents import plot_afferents
+from cogmap.plots.cells.cell_types import plot_cell_types
+from cogmap.plots.cells.examples import Tuning, plot_examples
+from cogmap.plots.cells.heading_cells import plot_tuning_curves
+from cogmap.plots.cells.learning_curves import plot_courses
+from cogmap.plots.cells.place_cells import plot_rate_maps
+from cogmap.plots.one_factor import plot_cases
+from cogmap.plots.rooms.contact_sheet import plot_sheet
+from cogmap.plots.rooms.goals import plot_goals
+from cogmap.plots.rooms.nearest_views import plot_likeness
+from cogmap.plots.rooms.neighbours import plot_neighbours
+from cogmap.plots.rooms.room import plot_room
+from cogmap.plots.rooms.routes import plot_routes
+from cogmap.plots.rooms.views import plot_views
+from cogmap.plots.rooms.walk import plot_walk
+from cogmap.plots.shape.barcode_grid import plot_barcode_grid
+from cogmap.plots.shape.barcodes import plot_barcodes
+from cogmap.plots.shape.embedding import plot_embedding
+from cogmap.plots.sweep import plot_trend
+from cogmap.plots.truth.confusion import plot_confusion
+from cogmap.plots.truth.heading_errors import plot_compass
+from cogmap.plots.truth.localisation import plot_localisation
+from cogmap.plots.truth.metric_map import plot_metric_map
+from cogmap.plots.truth.position import plot_position
+from cogmap.plots.truth.quasi_metric import plot_quasi_metric
+from cogmap.plots.truth.translation import plot_translation
 
 __all__ = [
     "Tuning",

@@ -13,10 +13,10 @@ from typing import Any
 
 from arena import Arena, Camera, Motion, Nose
 from arena.motions.catalogue import MOTIONS
-from cogmap.cognitive_map import CognitiveMap
 from cogmap.errors import CogmapError
-from cogmap.experiments.catalogue import EXPERIMENTS, FEWEST, Experiment
+from cogmap.experiments.registry import EXPERIMENTS, FEWEST, Experiment
 from cogmap.inputs import check_choice, checked_count
+from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.sweeps.plan import Plan, Shown
 
 CAMERAS: dict[str, Callable[[], Camera]] = {"panoramic": Camera.panoramic, "perspective": Camera.perspective}

@@ -16,7 +16,7 @@ from joblib import Parallel, delayed
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from cogmap.errors import CogmapError
-from cogmap.experiments.catalogue import EXPERIMENTS, Experiment, experiment
+from cogmap.experiments.registry import EXPERIMENTS, Experiment, experiment
 from cogmap.sweeps.ledger import KEPT, MARK, Ledger, is_full_disk, writing
 from cogmap.sweeps.points import Point
 from cogmap.sweeps.table import comparable

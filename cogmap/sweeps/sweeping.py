@@ -9,10 +9,10 @@ import pandas as pd
 from tqdm import tqdm
 
 from cogmap.errors import CogmapError
-from cogmap.experiments.about import write_about
-from cogmap.experiments.catalogue import EXPERIMENTS
+from cogmap.experiments.provenance import write_about
+from cogmap.experiments.registry import EXPERIMENTS
 from cogmap.inputs import checked_count
-from cogmap.plots.trends import plot_trend, statistics_of
+from cogmap.plots.sweep import plot_trend, statistics_of
 from cogmap.sweeps.ledger import Ledger, Record, writing
 from cogmap.sweeps.plan import Plan
 from cogmap.sweeps.points import Point, points_of

@@ -8,7 +8,7 @@ import pytest
 
 from arena import Arena, Recording
 from cogmap import CognitiveMap, cli
-from cogmap.experiments.catalogue import EXPERIMENTS
+from cogmap.experiments.registry import EXPERIMENTS
 
 FURNISHED = Arena.load("furnished").to_toml()
 

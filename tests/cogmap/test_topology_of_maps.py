@@ -17,8 +17,8 @@ import pytest
 
 from arena import Arena, Brownian, Camera, explore
 from cogmap import Activity, Betti, CognitiveMap
-from cogmap.experiments.homologies import homologies
-from cogmap.manifold import population_nerve
+from cogmap.evaluation.homology_of_map import homologies
+from cogmap.shape import population_nerve
 from cogmap.testing import assert_betti
 
 VIEWS = 17_000

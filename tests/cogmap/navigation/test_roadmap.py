@@ -7,7 +7,7 @@ import scipy.sparse as sp
 import shapely
 
 from cogmap.errors import CogmapError
-from cogmap.manifold.neighbours import neighbour_graph
+from cogmap.graph.neighbour_graph import neighbour_graph
 from cogmap.navigation.roadmap import ONE_SIDED, VisualRoadmap
 
 

@@ -60,7 +60,7 @@ def test_the_users_settings_are_neither_used_nor_changed() -> None:
 
 
 @pytest.mark.parametrize(
-    "module", sorted(Path(cogmap.plots.__file__).parent.glob("*.py")), ids=lambda p: p.stem
+    "module", sorted(Path(cogmap.plots.__file__).parent.rglob("*.py")), ids=lambda p: p.stem
 )
 def test_no_module_reaches_for_global_figures(module: Path) -> None:
     text = module.read_text(encoding="utf-8")

@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from arena import Brownian, Camera
-from cogmap.experiments.catalogue import EXPERIMENTS, Experiment
+from cogmap.experiments.conditions import Setting
+from cogmap.experiments.registry import EXPERIMENTS, Experiment
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import Setting
 
 
 def toy(setting: Setting) -> Result:

@@ -8,9 +8,9 @@ import numpy as np
 
 from arena import Brownian, Camera
 from cogmap.cli import main
-from cogmap.experiments.catalogue import EXPERIMENTS, Experiment
+from cogmap.experiments.conditions import Setting
+from cogmap.experiments.registry import EXPERIMENTS, Experiment
 from cogmap.experiments.result import Result
-from cogmap.experiments.setting import Setting
 
 DIARY, SECONDS = Path(os.environ["DIARY"]), float(os.environ.get("SECONDS", "0.1"))
 

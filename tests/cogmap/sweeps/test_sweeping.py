@@ -11,8 +11,8 @@ import pytest
 from filelock import FileLock
 
 from cogmap import CogmapError, Plan, cli, sweep
-from cogmap.experiments.catalogue import EXPERIMENTS, Experiment
-from cogmap.experiments.setting import Setting
+from cogmap.experiments.conditions import Setting
+from cogmap.experiments.registry import EXPERIMENTS, Experiment
 from cogmap.sweeps import running
 from cogmap.sweeps.ledger import is_full_disk
 

@@ -1,0 +1,62 @@
+"""What spikes say about where the animal is or looks, by Bayes' rule."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float, Real
+from scipy import special
+
+from cogmap.cells.checks import check_array, check_samples
+from cogmap.cells.rates.spikes import SECONDS, check_seconds
+from cogmap.errors import CogmapError
+
+FAINTEST = 1e-3
+"""Hz; no bin has a lower rate, so that one spike where a cell was never heard makes a bin unlikely, not
+impossible."""
+
+
+def poisson_posterior(
+    spikes: Real[np.ndarray, "views cells"],
+    patterns: Float[np.ndarray, "cells bins"],
+    *,
+    seconds: float = SECONDS,
+    prior: Float[np.ndarray, "bins"] | None = None,
+) -> Float[np.ndarray, "views bins"]:
+    """Probability of each bin given the spikes of independent Poisson cells.
+
+    P(bin | n) ∝ P(bin) Π λ_i(bin)^{n_i} e^{−λ_i(bin) T}. `likeliest(posterior, maps.places)` decodes place,
+    `likeliest(posterior, heading_centres(36))` heading.
+
+    Parameters
+    ----------
+    spikes
+        How often each cell fired in each view, (views, cells).
+    patterns
+        λ in Hz: `maps.patterns` of rate maps or tuning curves, learnt from other views.
+    seconds
+        T, how long a view lasts.
+    prior
+        P(bin), in any unit; uniform by default. Occupancy makes rare places less likely.
+
+    Raises
+    ------
+    CogmapError
+        For values that are negative or not finite, shapes that do not fit, a prior that excludes every bin.
+
+    References
+    ----------
+    Zhang, Ginzburg, McNaughton & Sejnowski 1998, Interpreting neuronal population activity by reconstruction,
+    J. Neurophysiol. 79.
+    """
+    check_samples(spikes)
+    check_array("patterns", patterns, (spikes.shape[1], None))
+    check_seconds(seconds)
+    rates = np.maximum(patterns.astype(float), FAINTEST)
+    likelihood = spikes.astype(float) @ np.log(rates) - seconds * rates.sum(axis=0)
+    if prior is not None:
+        check_array("prior", prior, (patterns.shape[1],))
+        if prior.min() < 0 or prior.max() <= 0:
+            raise CogmapError("prior is negative or nowhere positive; give a probability to every bin")
+        likelihood += special.xlogy(1, prior)
+    posterior: np.ndarray = special.softmax(likelihood, axis=1)
+    return posterior

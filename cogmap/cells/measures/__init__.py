@@ -1,0 +1,1 @@
+"""Measures of cells: fields, information, tuning to heading, stability."""

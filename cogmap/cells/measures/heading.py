@@ -1,0 +1,111 @@
+"""What makes a cell a head-direction cell."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+
+from cogmap.cells.checks import check_samples
+from cogmap.cells.measures.information import spatial_information
+from cogmap.cells.measures.rayleigh import rayleigh_test
+from cogmap.cells.measures.stability import curve_stability
+from cogmap.cells.rates.bins import BinEdges
+from cogmap.cells.rates.maps import RateMaps, rate_maps
+from cogmap.cells.rates.spikes import SECONDS, check_seconds
+from cogmap.cells.rates.tuning import mean_vectors, tuning_curves, tuning_widths
+
+LEAST_VECTOR = 0.5
+"""A head-direction cell's mean vector is longer."""
+MOST_DRIFT = 15.0
+"""Degrees; a head-direction cell drifts less over the room."""
+MOST_INFORMATION = 0.3
+"""bit/spike; a head-direction cell tells less about the place."""
+BLOCKS = 3
+"""The room's bounding box is split into this many blocks along either side."""
+BLOCK_VIEWS = 100
+"""A block with fewer views is left out: they tell a preferred direction to about 2°."""
+BLOCK_BINS = 12
+"""Coarser than over the whole room, so that the bins of a block have views."""
+
+
+def heading_statistics(
+    rates: Float[np.ndarray, "views cells"],
+    positions: Float[np.ndarray, "views 2"],
+    headings: Float[np.ndarray, "views"],
+    *,
+    maps: RateMaps | None = None,
+    seconds: float = SECONDS,
+) -> pd.DataFrame:
+    """Measure every cell as a head-direction cell: one row per cell, one column per statistic.
+
+    A cell passes with a mean vector longer than .5, a drift below 15° and less than 0.3 bit/spike.
+
+    Parameters
+    ----------
+    rates
+        In Hz, (views, cells).
+    positions
+        In m, (views, 2).
+    headings
+        In rad, (views,).
+    maps
+        The rate maps of these cells; by default `rate_maps(rates, positions)`.
+    seconds
+        How long a view lasts; with the rates it says how many spikes the Rayleigh test has.
+
+    Returns
+    -------
+    pandas.DataFrame
+        `preferred_direction_rad`, `mean_vector_length` and `tuning_width_deg` (at half height; 36
+        occupancy-normalised bins), `rayleigh_p` (of as many spikes as the rates make), `stability`
+        (correlation of the curves of both halves), `drift_deg` (median
+        over 3×3 blocks of the room of the angle between the preferred direction there, from 12 bins, and
+        everywhere; blocks with fewer than 100 views are left out), `spatial_information` (bit/spike),
+        `passing`. NaN where a silent cell has no value.
+
+    Raises
+    ------
+    CogmapError
+        For rates that are negative or not finite, shapes that do not fit, maps of other cells.
+    """
+    check_samples(rates, positions=positions, headings=headings)
+    maps = rate_maps(rates, positions) if maps is None else maps.of_cells(rates.shape[1])
+    check_seconds(seconds)
+    curves = tuning_curves(rates, headings)
+    vector = mean_vectors(curves)
+    table = pd.DataFrame(
+        {
+            "preferred_direction_rad": np.angle(vector),
+            "mean_vector_length": np.abs(vector),
+            "tuning_width_deg": np.rad2deg(tuning_widths(curves)),
+            "rayleigh_p": rayleigh_test(rates * seconds, headings).p_value,
+            "stability": curve_stability(rates, headings),
+            "drift_deg": np.rad2deg(_drift(rates, positions, headings)),
+            "spatial_information": spatial_information(maps),
+        },
+        index=pd.RangeIndex(rates.shape[1], name="cell"),
+    )
+    table["passing"] = (
+        (table["mean_vector_length"] > LEAST_VECTOR)
+        & (table["drift_deg"] < MOST_DRIFT)
+        & (table["spatial_information"] < MOST_INFORMATION)
+    )
+    return table
+
+
+def _drift(
+    rates: Float[np.ndarray, "views cells"],
+    positions: Float[np.ndarray, "views 2"],
+    headings: Float[np.ndarray, "views"],
+) -> Float[np.ndarray, "cells"]:
+    """Median over blocks of the room of |preferred direction there − everywhere|, rad."""
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    block = BinEdges(*np.linspace(low, high, BLOCKS + 1).T).bin_of(positions)
+    away = mean_vectors(tuning_curves(rates, headings)).conj()
+    turns = [
+        np.abs(np.angle(mean_vectors(tuning_curves(rates[here], headings[here], BLOCK_BINS)) * away))
+        for here in (block == index for index in range(BLOCKS**2))
+        if here.sum() >= BLOCK_VIEWS
+    ]
+    return pd.DataFrame(turns, columns=range(rates.shape[1])).median().to_numpy(dtype=float)

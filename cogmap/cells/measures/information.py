@@ -1,0 +1,49 @@
+"""How much the rate of a cell tells about the place."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+from scipy import special
+
+from cogmap.cells.rates.maps import RateMaps
+from cogmap.cells.rates.ratios import ratio
+
+
+def spatial_information(maps: RateMaps) -> Float[np.ndarray, "cells"]:
+    """Information about the place in bit/spike, NaN for a silent cell.
+
+    I = Σ p (λ/λ̄) log₂(λ/λ̄) over the visited bins, where p is the occupancy and λ̄ = Σ p λ; no term is clipped.
+
+    Source: Skaggs, McNaughton, Gothard & Markus 1993, An information-theoretic approach to deciphering the
+    hippocampal code, NIPS 5.
+    """
+    occupancy, gain = _gain(maps)
+    information: np.ndarray = np.sum(occupancy * special.xlogy(gain, gain), axis=1) / np.log(2)
+    return information
+
+
+def sparsity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
+    """Part of the room that a cell fires in, λ̄² / Σ p λ² in (0, 1], NaN for a silent cell.
+
+    Source: Skaggs, McNaughton, Wilson & Barnes 1996, Hippocampus 6.
+    """
+    occupancy, gain = _gain(maps)
+    part: np.ndarray = 1 / np.sum(occupancy * gain**2, axis=1)
+    return part
+
+
+def selectivity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
+    """Peak of the map over the mean rate, max λ / λ̄ ≥ 1, NaN for a silent cell.
+
+    Source: Skaggs, McNaughton, Wilson & Barnes 1996, Hippocampus 6.
+    """
+    highest: np.ndarray = _gain(maps)[1].max(axis=1)
+    return highest
+
+
+def _gain(maps: RateMaps) -> tuple[Float[np.ndarray, "bins"], Float[np.ndarray, "cells bins"]]:
+    """Occupancy as a probability and rates over their mean, in the visited bins."""
+    occupancy = maps.occupancy[maps.visited] / maps.occupancy.sum()
+    mean = np.sum(occupancy * maps.patterns, axis=1, keepdims=True)
+    return occupancy, ratio(maps.patterns, mean)

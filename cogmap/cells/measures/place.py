@@ -1,0 +1,103 @@
+"""What makes a cell a place cell."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+
+from cogmap.cells.checks import check_samples
+from cogmap.cells.measures.coherence import coherence
+from cogmap.cells.measures.fields import PlaceFields, place_fields
+from cogmap.cells.measures.information import selectivity, sparsity, spatial_information
+from cogmap.cells.measures.stability import map_stability
+from cogmap.cells.rates.bins import heading_bin, means_by_bin
+from cogmap.cells.rates.maps import RateMaps, rate_maps
+from cogmap.cells.rates.tuning import mean_vectors
+
+DIRECTION_BINS = 12
+LEAST_INFORMATION = 0.5
+"""bit/spike; a place cell has more."""
+MOST_DIRECTION = 0.25
+"""A place cell's direction vector inside its field is shorter."""
+
+
+def place_statistics(
+    rates: Float[np.ndarray, "views cells"],
+    positions: Float[np.ndarray, "views 2"],
+    headings: Float[np.ndarray, "views"],
+    *,
+    maps: RateMaps | None = None,
+) -> pd.DataFrame:
+    """Measure every cell as a place cell: one row per cell, one column per statistic.
+
+    A cell passes with exactly one field, more than 0.5 bit/spike and an in-field direction vector below .25.
+
+    Parameters
+    ----------
+    rates
+        In Hz, (views, cells).
+    positions
+        In m, (views, 2).
+    headings
+        In rad, (views,).
+    maps
+        The rate maps of these cells; by default `rate_maps(rates, positions)`.
+
+    Returns
+    -------
+    pandas.DataFrame
+        `peak_rate_hz` of the map, `mean_rate_hz` over the views, `fields`, `field_area_m2` and `centre_x_m`,
+        `centre_y_m` of the largest field, `spatial_information` (bit/spike), `sparsity`, `selectivity`,
+        `coherence` (of the map without smoothing), `stability` (correlation of the maps of both halves),
+        `in_field_direction_vector` (length of the mean vector over the views inside the fields, 12
+        occupancy-normalised bins), `passing`. NaN where a silent cell or one without a field has no value.
+
+    Raises
+    ------
+    CogmapError
+        For rates that are negative or not finite, shapes that do not fit, maps of other cells.
+    """
+    check_samples(rates, positions=positions, headings=headings)
+    maps = rate_maps(rates, positions) if maps is None else maps.of_cells(rates.shape[1])
+    fields = place_fields(maps)
+    edges = maps.edges
+    unsmoothed = rate_maps(rates, positions, edges.side, 0.0, edges=edges, visited=maps.visited)
+    table = pd.DataFrame(
+        {
+            "peak_rate_hz": np.nanmax(maps.rates, axis=(1, 2)),
+            "mean_rate_hz": rates.mean(axis=0, dtype=float),
+            "fields": fields.number,
+            "field_area_m2": fields.area,
+            "centre_x_m": fields.centre[:, 0],
+            "centre_y_m": fields.centre[:, 1],
+            "spatial_information": spatial_information(maps),
+            "sparsity": sparsity(maps),
+            "selectivity": selectivity(maps),
+            "coherence": coherence(unsmoothed),
+            "stability": map_stability(rates, positions, edges),
+            "in_field_direction_vector": _in_field_vectors(rates, positions, headings, maps, fields),
+        },
+        index=pd.RangeIndex(rates.shape[1], name="cell"),
+    )
+    table["passing"] = (
+        (table["fields"] == 1)
+        & (table["spatial_information"] > LEAST_INFORMATION)
+        & (table["in_field_direction_vector"] < MOST_DIRECTION)
+    )
+    return table
+
+
+def _in_field_vectors(
+    rates: Float[np.ndarray, "views cells"],
+    positions: Float[np.ndarray, "views 2"],
+    headings: Float[np.ndarray, "views"],
+    maps: RateMaps,
+    fields: PlaceFields,
+) -> Float[np.ndarray, "cells"]:
+    """Length of the mean vector of each cell over the views inside its fields, NaN without any."""
+    place = maps.edges.bin_of(positions)
+    inside = fields.masks.reshape(len(maps), -1)[:, place].T & (place >= 0)[:, None]
+    curves = means_by_bin(heading_bin(headings, DIRECTION_BINS), DIRECTION_BINS, rates, inside)
+    length: np.ndarray = np.abs(mean_vectors(curves.T))
+    return length

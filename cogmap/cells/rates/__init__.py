@@ -1,0 +1,1 @@
+"""Rates over bins of place and heading, spikes, and their nulls."""

@@ -1,0 +1,82 @@
+"""Tuning curves: how much a cell fires in each direction."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Complex, Float
+
+from cogmap.cells.checks import check_samples
+from cogmap.cells.rates.bins import heading_bin, heading_centres, means_by_bin
+from cogmap.cells.rates.ratios import ratio
+
+
+def tuning_curves(
+    rates: Float[np.ndarray, "views cells"], headings: Float[np.ndarray, "views"], bins: int = 36
+) -> Float[np.ndarray, "cells bins"]:
+    """Mean rate of every cell in Hz in equal bins of heading, NaN in a bin without views.
+
+    Each bin is normalised by its own number of views. Bin k is centred at −π + (k + ½) 2π / bins.
+
+    Parameters
+    ----------
+    rates
+        In Hz, (views, cells).
+    headings
+        In rad, (views,).
+    bins
+        How many, around the whole circle.
+
+    Raises
+    ------
+    CogmapError
+        For rates that are negative or not finite, shapes that do not fit, fewer than three bins.
+    """
+    check_samples(rates, headings=headings)
+    return means_by_bin(heading_bin(headings, bins), bins, rates).T
+
+
+def mean_vectors(curves: Float[np.ndarray, "cells bins"]) -> Complex[np.ndarray, "cells"]:
+    """Mean vector Σ λ e^{iθ} / Σ λ of tuning curves, NaN for a silent cell; empty bins are left out.
+
+    Its length is 0 for a cell that knows no direction and 1 for one that fires in a single bin, its argument
+    is the preferred direction in rad.
+
+    Source: Batschelet 1981, Circular Statistics in Biology, chapter 1.
+    """
+    direction = heading_centres(curves.shape[1])
+    known = np.nan_to_num(curves)
+    total = known.sum(axis=1)
+    vector = np.sum(known * np.exp(1j * direction), axis=1)
+    return ratio(vector, total)
+
+
+def tuning_widths(curves: Float[np.ndarray, "cells bins"]) -> Float[np.ndarray, "cells"]:
+    """Full width in rad at half the peak of tuning curves, NaN for one that is nowhere below, or silent.
+
+    The arc around the highest bin to where the curve first falls through half the peak on either side, by a
+    straight line between bins; bins empty for any cell are left out.
+    """
+    seen = np.flatnonzero(~np.isnan(curves).any(axis=0))
+    if seen.size == 0:
+        return np.full(len(curves), np.nan)
+    known = curves[:, seen]
+    peak = known.argmax(axis=1)[:, None]
+    once_round = (peak + np.arange(seen.size + 1)) % seen.size
+    gain = ratio(np.take_along_axis(known, once_round, axis=1), known.max(axis=1, keepdims=True))
+    turn = heading_centres(curves.shape[1])[seen][once_round]
+    turn = (turn - turn[:, :1]) % (2 * np.pi)
+    turn[:, -1] = 2 * np.pi
+    width: np.ndarray = _fall(gain, turn) + _fall(gain[:, ::-1], 2 * np.pi - turn[:, ::-1])
+    return width
+
+
+def _fall(
+    gain: Float[np.ndarray, "cells bins"], turn: Float[np.ndarray, "cells bins"]
+) -> Float[np.ndarray, "cells"]:
+    """How far in rad each curve goes from its peak of 1 to fall through one half, NaN if it does not."""
+    below = gain < 0.5
+    cell, after = np.arange(len(gain)), below.argmax(axis=1)
+    high, low = gain[cell, after - 1], gain[cell, after]
+    part = ratio(high - 0.5, high - low)
+    near, far = turn[cell, after - 1], turn[cell, after]
+    return np.where(below.any(axis=1), near + part * (far - near), np.nan)

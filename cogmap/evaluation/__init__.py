@@ -1,0 +1,1 @@
+"""Evaluation: all that is told a pose or a room's plan."""

@@ -1,0 +1,40 @@
+"""The shape of everything that a map knows: its views, its fusion, its two populations."""
+
+import numpy as np
+from jaxtyping import Float
+from joblib import Parallel, delayed
+
+from cogmap.map.activity import Activity
+from cogmap.shape.homology import Betti, betti
+
+JOBS = 2
+
+
+def homologies(
+    codes: Float[np.ndarray, "views components"],
+    activity: Activity,
+    *,
+    landmarks: tuple[int, int] = (400, 150),
+    seed: int = 0,
+) -> dict[str, Betti]:
+    """Betti numbers of the view manifold, the fused map and both populations.
+
+    The view manifold is the codes, the fused map (recalled log odour, cos φ, sin φ), a population the square
+    roots of its rates, whose Poisson noise is the same at every rate. What a map without a compass does not
+    know, because it is NaN, is left out. Computed side by side in `JOBS` processes.
+
+    References
+    ----------
+    Bartlett (1936), The square root transformation in analysis of variance. J. R. Stat. Soc. Suppl. 3.
+    """
+    clouds = {
+        "view_manifold": codes,
+        "fused": np.column_stack([activity.odour, np.cos(activity.phase), np.sin(activity.phase)]),
+        "place": np.sqrt(activity.place),
+        "heading": np.sqrt(activity.heading),
+    }
+    clouds = {name: cloud for name, cloud in clouds.items() if np.isfinite(cloud).all()}
+    found = Parallel(n_jobs=JOBS)(
+        delayed(betti)(cloud, landmarks=landmarks, seed=seed) for cloud in clouds.values()
+    )
+    return dict(zip(clouds, found, strict=True))

@@ -1,0 +1,1 @@
+"""Peers: what others do, to compare with."""

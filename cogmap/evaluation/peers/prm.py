@@ -1,0 +1,82 @@
+"""The peer that knows the room: OMPL's probabilistic roadmap, in a process of its own."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+
+from arena import Arena
+from cogmap.cells.checks import check_array
+from cogmap.errors import CogmapError
+
+PATIENCE = 600
+"""Seconds after which the planner is given up."""
+
+
+def prm_paths(
+    arena: Arena,
+    pairs: Float[np.ndarray, "pairs 2 3"],
+    *,
+    radius: float,
+    milestones: int,
+    seed: int = 0,
+) -> list[Float[np.ndarray, "_ 3"] | None] | None:
+    """Plan in SE(2) with the arena's own collision check, on one roadmap for all queries.
+
+    OMPL reports its leaks at exit, which is why it has a process of its own.
+
+    Parameters
+    ----------
+    arena
+        The room.
+    pairs
+        Poses (start, goal): x, y in m and heading in rad.
+    radius
+        Of the body, m.
+    milestones
+        Of the roadmap: as many as there are views, for a fair comparison.
+    seed
+        Of OMPL. The last milestones still depend on the clock.
+
+    Returns
+    -------
+    A path of poses for each pair, or None where there is none; None when `ompl` is not installed.
+
+    Raises
+    ------
+    CogmapError
+        For poses that are not finite, and when the planner fails.
+
+    References
+    ----------
+    Şucan, Moll & Kavraki (2012), The Open Motion Planning Library.
+    """
+    check_array("pairs", pairs.reshape(-1, 3), (None, 3))
+    if importlib.util.find_spec("ompl") is None:
+        return None
+    order = {
+        "arena": arena.to_toml(),
+        "pairs": pairs.tolist(),
+        "radius": radius,
+        "milestones": milestones,
+        "seed": seed,
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        asked, answered = Path(folder) / "asked.json", Path(folder) / "answered.json"
+        asked.write_text(json.dumps(order), encoding="utf-8")
+        command = [sys.executable, "-m", "cogmap.evaluation.peers.ompl_worker", str(asked), str(answered)]
+        try:
+            ended = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)  # noqa: S603
+        except subprocess.TimeoutExpired:
+            raise CogmapError(f"OMPL was not done after {PATIENCE} s; ask for fewer milestones") from None
+        if not answered.is_file():
+            raise CogmapError(f"OMPL failed with code {ended.returncode}: {ended.stderr.strip()[-500:]}")
+        paths = json.loads(answered.read_text(encoding="utf-8"))
+    return [None if path is None else np.array(path) for path in paths]

@@ -1,0 +1,170 @@
+"""What experiments share: a map learnt from a walk, cells that compete for anything, and their measures."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+import torch
+from jaxtyping import Float
+
+from arena import Arena, Body, Recording
+from cogmap.cells import (
+    RateMaps,
+    bin_edges,
+    heading_statistics,
+    place_coverage,
+    place_fields,
+    place_statistics,
+    position_errors,
+    rate_maps,
+    tuning_curves,
+)
+from cogmap.cells.measures.correlations import correlations
+from cogmap.experiments.conditions import Setting
+from cogmap.map.activity import Activity
+from cogmap.map.cognitive_map import BATCH, CognitiveMap
+from cogmap.plots import Tuning
+from cogmap.threads import one_thread
+from neurons.layers.place_cells import PlaceCells
+from neurons.network import EPOCHS
+
+CELLS = 150
+"""In a population that competes for something; as many as a map has place cells."""
+MOST_CHARTS = 3000
+
+
+def grow_map(setting: Setting, walk: Recording) -> CognitiveMap:
+    """Learn a map with 3,000 charts, or a third as many as views when these are fewer than 9,000.
+
+    Parameters that the setting has of its own go before these.
+    """
+    usual = {"charts": min(MOST_CHARTS, len(walk) // 3), "seed": setting.seed}
+    return CognitiveMap(**{**usual, **setting.map}).fit(walk.views, walk.odours)
+
+
+def perceive(cmap: CognitiveMap, views: Any) -> Activity:
+    """Let a map look; one that is not to be trusted says so in the metrics, not in a warning."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="this map is not to be trusted")
+        return cmap.perceive(views)
+
+
+def trust(cmap: CognitiveMap) -> dict[str, Any]:
+    """Whether a map is to be trusted, and why not."""
+    return {"trusted": cmap.trusted_, "reason": cmap.reason_}
+
+
+def competing_cells(
+    learnt: Float[np.ndarray, "train inputs"],
+    *asked: Float[np.ndarray, "_ inputs"],
+    seed: int,
+    cells: int = CELLS,
+) -> list[Float[np.ndarray, "_ cells"]]:
+    """Let the place cells' layer compete for any inputs, as long as in a map, and give its rates in Hz."""
+    inputs = torch.from_numpy(np.asarray(learnt, np.float32))
+    order = np.random.default_rng(seed)
+    layer = PlaceCells(cells, 1, inputs.shape[1])
+    with one_thread():
+        for _ in range(EPOCHS["cells"]):
+            for rows in torch.from_numpy(order.permutation(len(inputs))).split(BATCH):
+                layer.compete(inputs[rows], memory=float(len(inputs)))
+        return [layer.tuning(torch.from_numpy(np.asarray(some, np.float32))).numpy() for some in asked]
+
+
+class Ground(NamedTuple):
+    """The truth that cells are measured against."""
+
+    known: Float[np.ndarray, "train 3"]
+    """Poses of the views that were learnt from: m, m, rad."""
+    poses: Float[np.ndarray, "views 3"]
+    """Poses of fresh views, on which cells are measured."""
+    reachable: Float[np.ndarray, "points 2"]
+    """Places that the body can reach, m."""
+
+    @classmethod
+    def of(
+        cls, room: Arena, known: Float[np.ndarray, "train 3"], poses: Float[np.ndarray, "views 3"]
+    ) -> Ground:
+        """Take all of the room as within reach."""
+        return cls(known, poses, room.sample_free(20_000, Body().radius, np.random.default_rng(0)))
+
+    def maps(self, rates: Float[np.ndarray, "views cells"]) -> RateMaps:
+        """Rate maps on bins that all populations share; a cell without a compass, of rate NaN, is silent."""
+        walked = np.concatenate([self.known[:, :2], self.poses[:, :2]])
+        edges = bin_edges(np.concatenate([walked, self.reachable]))
+        return rate_maps(np.nan_to_num(rates), self.poses[:, :2], edges=edges, visited=edges.visited(walked))
+
+    def tuning(self, rates: Float[np.ndarray, "views cells"]) -> Tuning:
+        """Rate maps and tuning curves, to be drawn."""
+        return Tuning(self.maps(rates), tuning_curves(np.nan_to_num(rates), self.poses[:, 2]))
+
+    def measure(self, rates: Float[np.ndarray, "views cells"]) -> Measured:
+        """Measure every cell both as a place cell and as a head-direction cell."""
+        positions, headings = self.poses[:, :2], self.poses[:, 2]
+        rates, maps = np.nan_to_num(rates), self.maps(rates)
+        place = place_statistics(rates, positions, headings, maps=maps)
+        heading = heading_statistics(rates, positions, headings, maps=maps)
+        mine = heading[["preferred_direction_rad", "mean_vector_length", "drift_deg"]]
+        table = place.drop(columns="passing").join(mine)
+        table["place_passing"], table["heading_passing"] = place["passing"], heading["passing"]
+        covered = place_coverage(
+            place_fields(maps), place["passing"].to_numpy(), maps.edges.visited(self.reachable)
+        )
+        return Measured(table, covered)
+
+    def position(
+        self, known: Float[np.ndarray, "train signals"], asked: Float[np.ndarray, "views signals"]
+    ) -> dict[str, float]:
+        """Errors of the positions that 4-nearest-neighbour regression reads from signals."""
+        away = position_errors(known, self.known[:, :2], asked, self.poses[:, :2])
+        return {
+            "position_median_m": float(np.median(away)),
+            "position_p95_m": float(np.percentile(away, 95)),
+        }
+
+
+class Measured(NamedTuple):
+    """A population, measured."""
+
+    table: pd.DataFrame
+    """Columns of `place_statistics` and `heading_statistics`, `place_passing` and `heading_passing`."""
+    place_coverage: float
+    """Reachable area inside some passing field."""
+
+    @property
+    def place_figures(self) -> dict[str, float]:
+        """What it is worth as a population of place cells."""
+        return {
+            "place_cells_passing": float(self.table["place_passing"].mean()),
+            "place_coverage": self.place_coverage,
+            **_median(self.table, "in_field_direction_vector", "field_area_m2"),
+        }
+
+    @property
+    def heading_figures(self) -> dict[str, float]:
+        """What it is worth as a population of head-direction cells."""
+        return {
+            "heading_cells_passing": float(self.table["heading_passing"].mean()),
+            **_median(self.table, "mean_vector_length", "drift_deg"),
+        }
+
+
+def map_correlations(first: RateMaps, second: RateMaps) -> Float[np.ndarray, "cells"]:
+    """Correlate the maps of the same cells over the bins that both know; NaN where one is flat."""
+    one, other = (maps.rates.reshape(len(maps.rates), -1) for maps in (first, second))
+    return correlations(one, other)
+
+
+def as_one_table(populations: dict[str, Measured]) -> pd.DataFrame:
+    """Join the tables of several populations, with their names in the column `population`."""
+    parts = [found.table.reset_index().assign(population=name) for name, found in populations.items()]
+    return pd.concat(parts, ignore_index=True)
+
+
+def _median(table: pd.DataFrame, *columns: str) -> dict[str, float]:
+    """Medians over the cells that have a value, left out where none has."""
+    known = table[list(columns)].median().dropna()
+    return {str(name): float(value) for name, value in known.items()}

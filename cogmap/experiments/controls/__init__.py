@@ -1,0 +1,1 @@
+"""Controls of the cells, one file each."""

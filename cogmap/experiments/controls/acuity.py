@@ -1,0 +1,73 @@
+"""How sharp an eye must be, and how many charts a map must have."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from arena import Brownian, Camera, Recording
+from cogmap.evaluation.populations import MOST_CHARTS, Ground, grow_map, perceive, trust
+from cogmap.evaluation.scoring import score
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.result import Result
+from cogmap.plots import plot_cases
+
+COLUMNS = (12, 24, 36, 60, 90, 360)
+"""Pixels of the eye around the body; it has a sixth as many rows."""
+USUAL_COLUMNS = 360
+CHARTS = (0.125, 0.25, 0.5, 1.0, 2.0)
+"""Parts of the usual number of charts."""
+RECEPTORS = 90
+"""Columns of the retina, which a coarser view is enlarged to."""
+LABELS = {"columns": "columns of the eye", "charts": "charts"}
+
+
+def acuity(setting: Setting) -> Result:
+    """Learn the same walk through coarser and coarser eyes, and with fewer and more charts.
+
+    An eye of few columns has large pixels: 12 are 30° each. A view with fewer columns than the retina has
+    receptors is enlarged, each pixel a block of its own, so that all else is the same for every eye. The
+    usual number of charts is 3,000, or a third of the views when these are fewer than 9,000. Without a
+    compass there is no error of heading.
+    """
+    usual = min(MOST_CHARTS, setting.views // 3)
+    cases = [(columns, usual) for columns in COLUMNS]
+    cases += [(USUAL_COLUMNS, round(part * usual)) for part in CHARTS if part != 1]
+    metrics: dict[str, Any] = {}
+    for columns in dict.fromkeys(columns for columns, _ in cases):
+        walk, fresh = look(setting, columns), look(setting, columns, fresh=True)
+        for charts in (some for width, some in cases if width == columns):
+            metrics[f"{columns}_columns_{charts}_charts"] = _learn(setting, walk, fresh, charts)
+    rows = [{"columns": columns, "charts": charts} for columns, charts in cases]
+    table = pd.DataFrame(
+        [{**row, **metrics["{columns}_columns_{charts}_charts".format(**row)]} for row in rows]
+    )
+    return Result(
+        metrics=metrics,
+        tables={"cases": table},
+        figures={"acuity": plot_cases(table, LABELS, doubling=True)},
+    )
+
+
+def look(setting: Setting, columns: int, *, fresh: bool = False) -> Recording:
+    """Walk with an eye of so many columns, its pixels repeated until they are as many as receptors."""
+    eye = Camera.panoramic(columns, columns // 6)
+    walk = setting.explore(Brownian(), eye, fresh=fresh)
+    times = -(-RECEPTORS // columns)
+    if times == 1:
+        return walk
+    return replace(walk, views=np.asarray(walk.views).repeat(times, axis=1).repeat(times, axis=2))
+
+
+def _learn(setting: Setting, walk: Recording, fresh: Recording, charts: int) -> dict[str, Any]:
+    cmap = grow_map(replace(setting, map={**setting.map, "charts": charts}), walk)
+    ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
+    known, asked = (perceive(cmap, one.views) for one in (walk, fresh))
+    return {
+        **ground.measure(asked.place).place_figures,
+        **score(asked, ground.poses, train=(known, ground.known), reachable=ground.reachable),
+        **trust(cmap),
+    }

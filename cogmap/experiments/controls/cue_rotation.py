@@ -1,0 +1,123 @@
+"""The walls of a square room turn by 90° and the smells stay: what the cells follow."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+
+from arena import Arena, Brownian, Camera, Recording
+from cogmap.cells import RateMaps, bin_edges, mean_vectors, rate_maps, tuning_curves
+from cogmap.errors import CogmapError
+from cogmap.evaluation.populations import grow_map, map_correlations, perceive, trust
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.result import Result
+from cogmap.plots import Tuning, plot_examples
+
+PLATFORM, ROOM = 1.5, 2.5
+"""Half the side of the platform and of the room, m."""
+CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))
+SOURCES = ((-1.2, -1.0), (1.2, 0.6), (0.9, -1.2))
+"""m; no turn of the room brings them to the same places."""
+
+
+def cue_rotation(setting: Setting) -> Result:
+    """Learn a square room, then turn its walls by a quarter and walk again, in the light and in the dark.
+
+    The walls are of the materials of the first four of the room that is given. A place cell follows the walls
+    when its map correlates better with the learnt one turned by a quarter than with the learnt one itself. In
+    the light cells fire by sight, in the dark place cells by smell and heading cells not at all;
+    `heading_shift_deg` is the median change of the preferred direction, counter-clockwise.
+    """
+    camera = Camera.panoramic()
+    rooms = {turns: square_room(setting.room, turns) for turns in (0, 1)}
+    walk, before, after = (
+        replace(setting, room=rooms[turns], seed=setting.seed + late).explore(
+            Brownian(), camera, fresh=late > 0
+        )
+        for turns, late in ((0, 0), (0, 1), (1, 2))
+    )
+    cmap = grow_map(setting, walk)
+    lit = perceive(cmap, before.views), perceive(cmap, after.views)
+    dark = cmap.perceive(odours=before.odours), cmap.perceive(odours=after.odours)
+    place = {
+        name: [_tuning(seen.place, one) for seen, one in zip(pair, (before, after), strict=True)]
+        for name, pair in (("light", lit), ("dark", dark))
+    }
+    heading = [_tuning(seen.heading, one) for seen, one in zip(lit, (before, after), strict=True)]
+    table = pd.DataFrame(
+        {
+            f"{name}_{cue}": map_correlations(turned(cells[0].maps, turns), cells[1].maps)
+            for name, cells in place.items()
+            for cue, turns in (("walls", 1), ("smells", 0))
+        }
+    )
+    shift = np.rad2deg(np.angle(mean_vectors(heading[1].curves) * mean_vectors(heading[0].curves).conj()))
+    figures = {
+        "heading_shift_deg": float(np.median(shift)),
+        "heading_follows_walls": float((abs(shift - 90) < 45).mean()),
+    }
+    return Result(
+        metrics={
+            **{
+                f"place_follows_walls_{name}": float(
+                    (table[f"{name}_walls"] > table[f"{name}_smells"]).mean()
+                )
+                for name in place
+            },
+            **{f"correlation_{name}": float(found) for name, found in table.median().items()},
+            **({} if np.isnan(shift).any() else figures),
+            **trust(cmap),
+        },
+        tables={"place_cells": table, "heading_cells": pd.DataFrame({"shift_deg": shift})},
+        figures={
+            "examples": plot_examples(
+                {
+                    "in the light, before": place["light"][0],
+                    "in the light, walls turned": place["light"][1],
+                    "in the dark, walls turned": place["dark"][1],
+                    "heading cells, before": heading[0],
+                    "heading cells, walls turned": heading[1],
+                }
+            )
+        },
+    )
+
+
+def square_room(room: Arena, turns: int) -> Arena:
+    """Build a square room with the first four wall materials of a room, turned by so many quarters.
+
+    Raises
+    ------
+    CogmapError
+        For a room with fewer walls.
+    """
+    materials = [wall.material for wall in room.walls[:4]]
+    if len(materials) < 4:
+        raise CogmapError(f"room {room.name!r} has {len(materials)} walls; a square room takes four")
+    corners = [(ROOM * x, ROOM * y) for x, y in CORNERS]
+    walls = [
+        {"start": corners[side], "end": corners[(side + 1) % 4], "material": materials[(side - turns) % 4]}
+        for side in range(4)
+    ]
+    return Arena.create(
+        name=f"square_{90 * turns}",
+        platform=[[(PLATFORM * x, PLATFORM * y) for x, y in CORNERS]],
+        walls=walls,
+        sources=[{"position": place} for place in SOURCES],
+    )
+
+
+def turned(maps: RateMaps, turns: int) -> RateMaps:
+    """Turn square maps by so many quarters counter-clockwise."""
+    # Row 0 is the lowest y, so that numpy's quarter turns go the other way.
+    return RateMaps(np.rot90(maps.rates, -turns, axes=(1, 2)), np.rot90(maps.occupancy, -turns), maps.edges)
+
+
+def _tuning(rates: Float[np.ndarray, "views cells"], walk: Recording) -> Tuning:
+    """Rate maps and tuning curves; a cell without a compass, of rate NaN, is silent."""
+    rates, poses = np.nan_to_num(rates), poses_of(walk)
+    edges = bin_edges(PLATFORM * np.array(CORNERS, dtype=float))
+    return Tuning(rate_maps(rates, poses[:, :2], edges=edges), tuning_curves(rates, poses[:, 2]))

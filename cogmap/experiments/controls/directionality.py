@@ -1,0 +1,77 @@
+"""Place cells in the open field and on a path, where nobody turns."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from arena import Brownian, Camera, Motion, Track
+from cogmap.evaluation.populations import (
+    Ground,
+    Measured,
+    as_one_table,
+    competing_cells,
+    grow_map,
+    perceive,
+    trust,
+)
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.result import Result
+from cogmap.plots import Tuning, plot_cell_types, plot_examples
+
+DIRECTIONAL = 0.5
+"""A longer in-field vector is that of a cell that fires three times as much one way as the other."""
+WALKS: dict[str, Motion] = {"open_field": Brownian(), "corridor": Track()}
+
+
+def directionality(setting: Setting) -> Result:
+    """Learn the same room all over and on a straight path, and ask in which direction its place cells fire.
+
+    `directional` is the share of cells with a field whose in-field direction vector is longer than .5. On the
+    path only two headings are met between the ends, and no turn joins them: the active charts of a unit fall
+    into two groups, one a direction, and the unit keeps to one of them. `vision_only` are cells that compete
+    for the Sanger codes.
+
+    References
+    ----------
+    McNaughton, Barnes & O'Keefe (1983), Experimental Brain Research 52; Muller, Bostock, Taube & Kubie
+    (1994), Journal of Neuroscience 14: place cells are directional on paths and not in the open.
+    """
+    metrics: dict[str, Any] = {}
+    cells: dict[str, Measured] = {}
+    drawn: dict[str, dict[str, Tuning]] = {}
+    for name, motion in WALKS.items():
+        walk = setting.explore(motion, Camera.panoramic())
+        fresh = setting.explore(motion, Camera.panoramic(), fresh=True)
+        known = poses_of(walk)
+        ground = Ground(known, poses_of(fresh), known[:, :2])
+        cmap = grow_map(setting, walk)
+        codes = cmap.encode(walk.views), cmap.encode(fresh.views)
+        rates = {
+            "vision_only": competing_cells(*codes, seed=setting.seed)[0],
+            "fused": perceive(cmap, fresh.views).place,
+        }
+        found = {kind: ground.measure(some) for kind, some in rates.items()}
+        metrics[name] = {
+            kind: {**one.place_figures, "directional": _share(one)} for kind, one in found.items()
+        }
+        metrics[name] |= trust(cmap)
+        label = name.replace("_", " ")
+        cells |= {f"{label}, {kind.replace('_', ' ')}": one for kind, one in found.items()}
+        drawn[name] = {
+            f"{label}, {kind.replace('_', ' ')}": ground.tuning(some) for kind, some in rates.items()
+        }
+    table = as_one_table(cells)
+    return Result(
+        metrics=metrics,
+        tables={"cells": table},
+        figures={
+            "cells": plot_cell_types(table),
+            **{f"examples_{name}": plot_examples(some) for name, some in drawn.items()},
+        },
+    )
+
+
+def _share(found: Measured) -> float:
+    """Share of directional cells among those with a field; 0 without any."""
+    vectors = found.table["in_field_direction_vector"].dropna()
+    return float((vectors > DIRECTIONAL).mean()) if len(vectors) else 0.0

@@ -1,0 +1,169 @@
+"""The holes of everything that a map knows, room by room, beside those that the rooms have."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+import pandas as pd
+import shapely
+from jaxtyping import Float
+
+from arena import Arena, Body, Brownian, Camera
+from cogmap.evaluation.homology_of_map import homologies
+from cogmap.evaluation.populations import grow_map, perceive
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.result import Result
+from cogmap.plots import plot_barcode_grid, plot_barcodes
+from cogmap.shape import Betti, Nerve, population_nerve
+
+T = TypeVar("T")
+Numbers = tuple[int, ...]
+"""Pieces, loops and, where they are asked for, voids."""
+
+
+POPULATIONS = ("place", "heading")
+
+
+class Case(NamedTuple):
+    """A cloud, its holes, and those that it should have."""
+
+    room: str
+    cloud: str
+    expected: Numbers
+    found: Betti | None
+    """None for headings without a compass."""
+    nerve: Nerve | None
+    """Of a population."""
+    reason: str = ""
+    """Why the map is not to be trusted."""
+
+    @property
+    def right(self) -> bool:
+        """Whether the numbers that are asked for are as expected."""
+        return self.found is not None and self.found.numbers[: len(self.expected)] == self.expected
+
+    @property
+    def nerve_right(self) -> bool:
+        """Whether those of the nerve are."""
+        return self.nerve is not None and self.nerve.numbers == self.expected
+
+    @property
+    def margin(self) -> float | None:
+        """Least factor by which a bar that is asked for would have to change to be judged otherwise."""
+        asked = self.found.margins[1 : len(self.expected)] if self.found else ()
+        factors = [last for last, _ in asked if last] + [1 / first for _, first in asked if first]
+        return min(factors, default=None)
+
+
+def homology(setting: Setting) -> Result:
+    """Count pieces, loops and voids of the view manifold, the fused map and both populations in every room.
+
+    A room with h pillars on its platform leaves the body a plane with h holes, of Betti numbers [1, h], times
+    the circle of its headings: [1, 1 + h, h] by Künneth's formula. The view manifold should have these
+    numbers, the fused map the same pieces and loops, place cells those of the plane and head-direction cells
+    those of the circle (`expected_numbers`). `right` of the `cases` do, by the calibrated rule of `betti`;
+    each that does not is drawn by itself. `margin` is the least factor by which a bar would have to change to
+    be judged otherwise. Beside it the nerve of each population, which knows only who is active with whom:
+    `nerve_right` of `nerve_cases`.
+    """
+    cases = [
+        case for room in (setting.room, *setting.further) for case in _visit(replace(setting, room=room))
+    ]
+    populations = [case for case in cases if case.cloud in POPULATIONS]
+    misses = [case for case in cases if not case.right]
+    return Result(
+        metrics={
+            "cases": len(cases),
+            "right": sum(case.right for case in cases),
+            "nerve_cases": len(populations),
+            "nerve_right": sum(case.nerve_right for case in populations),
+            "rooms": _by_room(cases, _figures),
+        },
+        tables={"bars": pd.concat([_bars(case) for case in cases], ignore_index=True)},
+        figures={
+            "barcodes": plot_barcode_grid(
+                _by_room(cases, lambda case: case.found),
+                _by_room(cases, lambda case: case.expected),
+            ),
+            **{
+                f"miss_{case.room}_{case.cloud}": plot_barcodes({f"{case.room}, {case.cloud}": case.found})
+                for case in misses
+                if case.found is not None
+            },
+        },
+    )
+
+
+def expected_numbers(room: Arena, start: Float[np.ndarray, "2"]) -> dict[str, Numbers]:
+    """Tell what a body that starts there (m) should find, from the shape of the free space around it."""
+    pieces = shapely.get_parts(room.free_space(Body().radius))
+    walked = min(pieces, key=lambda piece: float(piece.distance(shapely.Point(start))))
+    holes = len(walked.interiors)
+    return {
+        "view_manifold": (1, 1 + holes, holes),
+        "fused": (1, 1 + holes),
+        "place": (1, holes),
+        "heading": (1, 1),
+    }
+
+
+def _visit(setting: Setting) -> list[Case]:
+    """Learn a map of one room and look at all that it knows."""
+    walk = setting.explore(Brownian(), Camera.panoramic())
+    cmap = grow_map(setting, walk)
+    activity = perceive(cmap, walk.views)
+    found = homologies(cmap.encode(walk.views), activity, seed=setting.seed)
+    nerves = {name: population_nerve(getattr(activity, name)) for name in POPULATIONS if name in found}
+    expected = expected_numbers(setting.room, poses_of(walk)[0, :2])
+    return [
+        Case(setting.room.name, name, numbers, found.get(name), nerves.get(name), cmap.reason_)
+        for name, numbers in expected.items()
+    ]
+
+
+def _by_room(cases: list[Case], told: Callable[[Case], T]) -> dict[str, dict[str, T]]:
+    """Give what is told of every case, by room and cloud."""
+    rooms: dict[str, dict[str, T]] = {}
+    for case in cases:
+        rooms.setdefault(case.room, {})[case.cloud] = told(case)
+    return rooms
+
+
+def _figures(case: Case) -> dict[str, Any]:
+    found = case.found
+    return {
+        "expected": list(case.expected),
+        "right": case.right,
+        **({} if found is None else {"betti": list(found.numbers), "votes": list(found.votes)}),
+        "margin": case.margin,
+        **({} if case.nerve is None else {"nerve": list(case.nerve.numbers)}),
+        **({"reason": case.reason} if case.reason else {}),
+    }
+
+
+def _bars(case: Case) -> pd.DataFrame:
+    """Every bar of a case, those that stand out most first."""
+    if case.found is None:
+        return pd.DataFrame()
+    found = case.found
+    parts = [
+        pd.DataFrame(
+            {
+                "arena": case.room,
+                "cloud": case.cloud,
+                "dimension": dimension,
+                "birth": bars[:, 0],
+                "death": bars[:, 1],
+                "ratio": ratios,
+                "threshold": threshold,
+                "counts": np.arange(len(bars)) < number,
+            }
+        )
+        for dimension, (bars, ratios, threshold, number) in enumerate(
+            zip(found.bars, found.ratios, found.thresholds, found.numbers, strict=True)
+        )
+    ]
+    return pd.concat(parts, ignore_index=True)

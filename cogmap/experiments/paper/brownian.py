@@ -1,0 +1,92 @@
+"""A walk all over the room: the images lie on a solid torus of position and heading."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+from sklearn.metrics import r2_score
+from sklearn.neighbors import KNeighborsRegressor
+
+from arena import Brownian, Camera
+from cogmap.cells import HeadingFrame, heading_errors
+from cogmap.evaluation.quasi_metric import quasi_metric
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.paper.view_manifold import view_manifold
+from cogmap.experiments.result import Result
+from cogmap.plots import (
+    plot_barcodes,
+    plot_compass,
+    plot_embedding,
+    plot_position,
+    plot_quasi_metric,
+    plot_room,
+)
+from cogmap.shape import LandmarkIsomap
+
+COMPONENTS = 4
+"""Least number of dimensions in which R²×S¹ lies without crossing itself or being folded."""
+HELD_OUT = 0.1
+NEIGHBOURS = 10
+"""In the embedding, from whose poses that of a view is read."""
+
+
+def brownian(setting: Setting) -> Result:
+    """Figs. 3 and 6: find the solid torus, and read poses off four coordinates of it.
+
+    One view in ten is held out of the embedding and placed in it afterwards; `position_r2` is the share of
+    the variance of x and y of these views that the poses of their ten nearest others in the embedding tell.
+    """
+    walk = setting.explore(Brownian(), Camera.perspective())
+    poses = poses_of(walk)
+    found = view_manifold(walk.views, setting)
+    order = np.random.default_rng(setting.seed).permutation(len(poses))
+    held, known = np.split(order, [round(HELD_OUT * len(poses))])
+    isomap = LandmarkIsomap(COMPONENTS, metric="cosine", averaging=True, seed=setting.seed)
+    read = _read_poses(
+        isomap.fit_transform(found.words[known]), poses[known], isomap.transform(found.words[held])
+    )
+    truth = poses[held]
+    turn = heading_errors(read.headings, truth[:, 2], HeadingFrame(0.0, mirror=False))
+    near = quasi_metric(found.graph, poses, setting.seed)
+    shape = found.metrics(poses)
+    places = {"x (m)": poses[:, 0], "y (m)": poses[:, 1]}
+    return Result(
+        metrics={
+            "position_r2": r2_score(truth[:, :2], read.positions, multioutput="raw_values").tolist(),
+            "position_median_m": float(np.median(np.linalg.norm(read.positions - truth[:, :2], axis=1))),
+            **shape,
+            "loop_resultant": shape["heading_resultant"],
+            "heading_resultant": float(abs(np.exp(1j * turn).mean())),
+            "heading_median_deg": float(np.rad2deg(np.median(abs(turn)))),
+            **near.metrics,
+        },
+        tables={"views": found.table(poses), "distances": near.pairs, "places": near.places},
+        figures={
+            "room": plot_room(setting.room, poses),
+            "torus": plot_embedding(found.embedding, poses[:, 2], places),
+            "torus_fourth": plot_embedding(found.embedding, poses[:, 2], places, coordinates=(0, 1, 3)),
+            "heading": plot_compass(read.headings, truth[:, 2], truth[:, :2]),
+            "position": plot_position(read.positions, truth[:, :2]),
+            "distances": plot_quasi_metric(near.pairs, near.places),
+            "barcodes": plot_barcodes({"images of a walk": found.shape}),
+        },
+    )
+
+
+class _Read(NamedTuple):
+    positions: Float[np.ndarray, "views 2"]
+    headings: Float[np.ndarray, "views"]
+
+
+def _read_poses(
+    known: Float[np.ndarray, "known components"],
+    poses: Float[np.ndarray, "known 3"],
+    held: Float[np.ndarray, "views components"],
+) -> _Read:
+    """Mean pose of the nearest views in the embedding, weighted by 1 / distance."""
+    target = np.column_stack([poses[:, :2], np.cos(poses[:, 2]), np.sin(poses[:, 2])])
+    reader = KNeighborsRegressor(NEIGHBOURS, weights="distance").fit(known, target)
+    x, y, cosine, sine = reader.predict(held).T
+    return _Read(np.column_stack([x, y]), np.arctan2(sine, cosine))

@@ -1,0 +1,63 @@
+"""To and fro with spins: the images lie on a cylinder of heading and translation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from arena import Camera, Cyclic
+from cogmap.evaluation.quasi_metric import quasi_metric
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.paper.view_manifold import view_manifold
+from cogmap.experiments.result import Result
+from cogmap.plots import (
+    plot_barcodes,
+    plot_compass,
+    plot_embedding,
+    plot_quasi_metric,
+    plot_translation,
+    plot_walk,
+)
+from cogmap.shape import height_coordinate
+
+COMPONENTS = 4
+"""Coordinates of the embedding that the two ends of the cylinder are looked for in."""
+
+
+def cyclic(setting: Setting) -> Result:
+    """Figs. 4 and 5: find the cylinder, the angle around it and the height along it.
+
+    `translation_r2` is the squared correlation of the height with the distance along the way that the body
+    went to and fro on, which is the first principal axis of its positions.
+    """
+    walk = setting.explore(Cyclic(), Camera.perspective())
+    poses = poses_of(walk)
+    found = view_manifold(walk.views, setting)
+    height = height_coordinate(found.graph, found.embedding[:, :COMPONENTS], found.phase)
+    along = _along_the_way(poses[:, :2])
+    known = np.isfinite(height)
+    near = quasi_metric(found.graph, poses, setting.seed)
+    table = found.table(poses).assign(along_m=along, height=height)
+    return Result(
+        metrics={
+            "translation_r2": float(np.corrcoef(height[known], along[known])[0, 1] ** 2),
+            **found.metrics(poses),
+            **near.metrics,
+        },
+        tables={"views": table, "distances": near.pairs, "places": near.places},
+        figures={
+            "walk": plot_walk(setting.room, walk.times, poses),
+            "cylinder": plot_embedding(found.embedding, poses[:, 2], {"translation (m)": along}),
+            "heading": plot_compass(table["loop_rad"].to_numpy()[known], poses[known, 2], poses[known, :2]),
+            "translation": plot_translation(height[known], along[known], poses[known, 2]),
+            "distances": plot_quasi_metric(near.pairs, near.places),
+            "barcodes": plot_barcodes({"images of a run to and fro": found.shape}),
+        },
+    )
+
+
+def _along_the_way(positions: np.ndarray) -> np.ndarray:
+    """Distance from the middle of the way along its direction, m."""
+    centred = positions - positions.mean(axis=0)
+    axis = np.linalg.svd(centred.T @ centred)[0][:, 0]
+    along: np.ndarray = centred @ axis
+    return along

@@ -1,0 +1,119 @@
+"""A white room in which opposite corners look the same, and a blue wall that tells them apart."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+import torch
+from jaxtyping import Float
+from sklearn.decomposition import PCA
+
+from arena import Arena, Brownian, Camera
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.result import Result
+from cogmap.features.image_distances import motion_distances
+from cogmap.graph import nearest_points
+from cogmap.plots import plot_barcodes, plot_confusion, plot_views
+from cogmap.shape import Betti, betti
+from cogmap.threads import one_thread
+from neurons.layers.retina import Retina
+
+ROOMS = {"white": "white_rectangle", "blue_wall": "blue_wall"}
+QUERIES = 2000
+"""Views of a fresh walk that are looked for."""
+COMPONENTS = 60
+"""Principal components that views are compared in."""
+BLOCK = 1024
+
+
+class _Seen(NamedTuple):
+    nearest: pd.DataFrame
+    """`x_m`, `y_m`, `heading_rad` of each query, those of its nearest view, and whether it is confused."""
+    shape: Betti
+    pair: np.ndarray
+    poses: np.ndarray
+    """A view and that from the opposite pose."""
+
+
+def distinguishability(setting: Setting) -> Result:
+    """Count how often the view most like a query was taken from about the opposite pose.
+
+    A white rectangle with nothing in it looks the same from (x, y, θ) and from (−x, −y, θ + π); with one wall
+    blue it does not. A query is confused when its nearest view lies nearer to the opposite pose than to its
+    own. Strips are compared as the retina leaves them, in their principal components; the Betti numbers are
+    those of the same codes.
+    """
+    seen = {name: _look(setting, Arena.load(room)) for name, room in ROOMS.items()}
+    return Result(
+        metrics={
+            **{f"confusion_{name}": float(one.nearest["confused"].mean()) for name, one in seen.items()},
+            **{f"betti_{name}": list(one.shape.numbers) for name, one in seen.items()},
+            **{f"betti_votes_{name}": list(one.shape.votes) for name, one in seen.items()},
+        },
+        tables={f"nearest_{name}": one.nearest for name, one in seen.items()},
+        figures={
+            "confusion": plot_confusion({name: one.nearest for name, one in seen.items()}),
+            "views": plot_views(
+                np.concatenate([one.pair for one in seen.values()]),
+                np.concatenate([one.poses for one in seen.values()]),
+                2,
+            ),
+            "barcodes": plot_barcodes({f"{name} room": one.shape for name, one in seen.items()}),
+        },
+    )
+
+
+def _look(setting: Setting, room: Arena) -> _Seen:
+    strips = Camera.panoramic()
+    here = replace(setting, room=room)
+    walk = here.explore(Brownian(), strips)
+    fresh = here.explore(Brownian(), strips, views=min(QUERIES, setting.views), fresh=True)
+    known, asked = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), setting.seed)
+    nearest = poses_of(walk)[nearest_points(known, 1, queries=asked).indices[:, 0]]
+    poses = poses_of(fresh)
+    opposite = _opposite(room, poses)
+    columns = ["x_m", "y_m", "heading_rad"]
+    table = pd.DataFrame(poses, columns=columns).join(
+        pd.DataFrame(nearest, columns=[f"nearest_{name}" for name in columns])
+    )
+    first = np.stack([poses[0], opposite[0]])
+    return _Seen(
+        nearest=table.assign(confused=_apart(nearest, opposite) < _apart(nearest, poses)),
+        shape=betti(known, seed=setting.seed),
+        pair=strips.render(room, first),
+        poses=first,
+    )
+
+
+def _opposite(room: Arena, poses: Float[np.ndarray, "views 3"]) -> Float[np.ndarray, "views 3"]:
+    """Poses after half a turn about the middle of the room."""
+    x0, y0, x1, y1 = room.bounds
+    turned: np.ndarray = np.array([x0 + x1, y0 + y1, np.pi]) + poses * [-1, -1, 1]
+    return turned
+
+
+def _apart(ours: Float[np.ndarray, "views 3"], theirs: Float[np.ndarray, "views 3"]) -> np.ndarray:
+    """How far each pose is from the one in the same row, m."""
+    return np.array([motion_distances(a[None], b[None])[0, 0] for a, b in zip(ours, theirs, strict=True)])
+
+
+def retina_codes(
+    known: np.ndarray, asked: np.ndarray, seed: int
+) -> tuple[Float[np.ndarray, "views components"], Float[np.ndarray, "queries components"]]:
+    """Give the principal components, of the known views, of what the retina makes of strips."""
+    retina = Retina(*known.shape[1:3])
+    with one_thread():
+        sensed = [
+            np.concatenate(
+                [
+                    retina(torch.from_numpy(views[first : first + BLOCK])).numpy()
+                    for first in range(0, len(views), BLOCK)
+                ]
+            )
+            for views in (known, asked)
+        ]
+        pca = PCA(min(COMPONENTS, len(known)), random_state=seed)
+        return pca.fit_transform(sensed[0]), pca.transform(sensed[1])

@@ -1,0 +1,114 @@
+"""Where a view was taken, told by remembered views (Table 3)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+
+from arena import Brownian, Camera
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.result import Result
+from cogmap.features import BagOfWords
+from cogmap.navigation import Localiser, Location, image_codes
+from cogmap.plots import plot_localisation, plot_neighbours
+
+NOISE = 0.01
+"""Of the camera on the fresh walk, as a share of the brightest grey level."""
+QUERIES, NEIGHBOURS = 5, 5
+"""Of Table 3."""
+
+
+def localisation(setting: Setting) -> Result:
+    """Table 3: place the views of a fresh walk, taken with a noisy camera, among remembered ones.
+
+    Neighbours are found by bags of words, weights in blurred images; poses of the remembered views enter when
+    all is done, as what the weights interpolate. `nearest_*` are the errors of the nearest view by words. A
+    view that shows no known word has no place, and `placed` is the share of those that have.
+    """
+    walk = setting.explore(Brownian(), Camera.perspective())
+    fresh = setting.explore(Brownian(), Camera.perspective(noise=NOISE), fresh=True)
+    words = BagOfWords(seed=setting.seed, progress=setting.progress)
+    localiser = Localiser(words.fit_transform(walk.views), codes=image_codes(walk.views))
+    found = localiser.locate(words.transform(fresh.views), codes=image_codes(fresh.views))
+    known, truth = poses_of(walk), poses_of(fresh)
+    read = interpolated_poses(found, known)
+    placed = found.indices[:, 0] >= 0
+    nearest = np.where(placed[:, None], known[found.indices[:, 0]], np.nan)
+    table = pd.DataFrame(
+        {
+            **_columns("", truth),
+            **_columns("read_", read),
+            **_columns("nearest_", nearest),
+            **_errors("", read, truth),
+            **_errors("nearest_", nearest, truth),
+        }
+    )
+    shown = np.linspace(0, len(truth) - 1, min(QUERIES, len(truth))).astype(int)
+    neighbours = np.maximum(found.indices[shown, :NEIGHBOURS], 0)
+    return Result(
+        metrics={"noise": NOISE, "placed": float(placed.mean()), **_summary(table)},
+        tables={"views": table, "neighbours": _table_3(shown, neighbours, truth, known)},
+        figures={
+            "neighbours": plot_neighbours(
+                np.asarray(fresh[shown].views),
+                truth[shown],
+                np.stack([[walk.views[view] for view in row] for row in neighbours]),
+                known[neighbours],
+            ),
+            "errors": plot_localisation(table),
+        },
+    )
+
+
+def interpolated_poses(
+    location: Location, poses: Float[np.ndarray, "views 3"]
+) -> Float[np.ndarray, "queries 3"]:
+    """Give Σ w · pose for each query; headings are counted from that of the nearest view, the short way."""
+    near = poses[location.indices]
+    ahead = near[:, :1, 2]
+    turn = np.angle(np.exp(1j * (near[:, :, 2] - ahead)))
+    heading = ahead[:, 0] + (location.weights * turn).sum(axis=1)
+    places = (location.weights[:, :, None] * near[:, :, :2]).sum(axis=1)
+    return np.column_stack([places, np.angle(np.exp(1j * heading))])
+
+
+def _columns(prefix: str, poses: Float[np.ndarray, "views 3"]) -> dict[str, np.ndarray]:
+    return dict(zip((f"{prefix}x_m", f"{prefix}y_m", f"{prefix}heading_rad"), poses.T, strict=True))
+
+
+def _errors(
+    prefix: str, read: Float[np.ndarray, "views 3"], truth: Float[np.ndarray, "views 3"]
+) -> dict[str, np.ndarray]:
+    return {
+        f"{prefix}position_error_m": np.linalg.norm((read - truth)[:, :2], axis=1),
+        f"{prefix}heading_error_deg": np.rad2deg(np.abs(np.angle(np.exp(1j * (read - truth)[:, 2])))),
+    }
+
+
+def _summary(table: pd.DataFrame) -> dict[str, Any]:
+    return {
+        f"{prefix}{what}_{name}_{unit}": float(np.nanpercentile(table[f"{prefix}{what}_error_{unit}"], share))
+        for prefix in ("", "nearest_")
+        for what, unit in (("position", "m"), ("heading", "deg"))
+        for name, share in (("median", 50), ("p95", 95))
+    }
+
+
+def _table_3(
+    queries: np.ndarray, neighbours: np.ndarray, truth: np.ndarray, known: np.ndarray
+) -> pd.DataFrame:
+    rank = np.tile(np.arange(1, neighbours.shape[1] + 1), len(queries))
+    query, view = np.repeat(queries, neighbours.shape[1]), neighbours.ravel()
+    return pd.DataFrame(
+        {
+            "query": query,
+            "rank": rank,
+            "view": view,
+            **_columns("query_", truth[query]),
+            **_columns("", known[view]),
+            **_errors("", known[view], truth[query]),
+        }
+    )

@@ -1,0 +1,127 @@
+"""A spin on the spot: the images lie on a ring, and a small network reads the heading off it."""
+
+from __future__ import annotations
+
+import warnings
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.neural_network import MLPRegressor
+from sklearn.pipeline import Pipeline, make_pipeline
+from sklearn.preprocessing import StandardScaler
+
+from arena import Camera, Rotation
+from cogmap.cells import HeadingFrame, heading_errors
+from cogmap.evaluation.quasi_metric import quasi_metric
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.paper.view_manifold import view_manifold
+from cogmap.experiments.result import Result
+from cogmap.plots import plot_barcodes, plot_compass, plot_embedding, plot_quasi_metric, plot_views
+from cogmap.threads import one_thread
+
+SHARES = {"training": 0.75, "validation": 0.15, "test": 0.1}
+"""The paper's split of 1,800 views: 1350, 270, 180."""
+SHOWN_TO_NETWORK = 1800
+DECAYS = (1e-6, 1e-4, 1e-2)
+"""Weight decays, of which the validation views choose one."""
+
+
+def rotation(setting: Setting) -> Result:
+    """Fig. 1 and Table 2: spin, find the ring, and predict the heading from coordinates on the manifold."""
+    walk = setting.explore(Rotation(), Camera.perspective())
+    poses = poses_of(walk)
+    found = view_manifold(walk.views, setting)
+    fit = predict_headings(found.embedding, poses[:, 2], setting.seed)
+    test = fit.table[fit.table["split"] == "test"]
+    near = quasi_metric(found.graph, poses, setting.seed)
+    shown = np.linspace(0, len(walk) - 1, 12).astype(int)
+    return Result(
+        metrics={
+            **{f"{name}_correlation": value for name, value in fit.correlations.items()},
+            "median_error_deg": float(np.degrees(test["error_rad"].abs().median())),
+            **found.metrics(poses),
+            **near.metrics,
+        },
+        tables={"views": found.table(poses), "predictions": fit.table, "distances": near.pairs},
+        figures={
+            "views": plot_views(np.asarray(walk[shown].views), poses[shown], 4, panoramic=False),
+            "ring": plot_embedding(found.embedding, poses[:, 2], coordinates=(0, 1)),
+            "prediction": plot_compass(
+                (test["heading_rad"] + test["error_rad"]).to_numpy(), test["heading_rad"].to_numpy()
+            ),
+            "distances": plot_quasi_metric(near.pairs, near.places),
+            "barcodes": plot_barcodes({"images of a spin": found.shape}),
+        },
+    )
+
+
+class Fit(NamedTuple):
+    """What a network makes of manifold coordinates."""
+
+    table: pd.DataFrame
+    """`view`, `split`, `heading_rad` and `error_rad` of the prediction, a row for each view it was shown."""
+    correlations: dict[str, float]
+    """Of predicted with true heading, by split."""
+
+
+def predict_headings(
+    coordinates: Float[np.ndarray, "views components"], headings: Float[np.ndarray, "views"], seed: int
+) -> Fit:
+    """Train a small backpropagation network from coordinates to (cos θ, sin θ) on some of the views.
+
+    The training views set its weights, the validation views choose the weight decay, the test views judge.
+    Errors are taken the short way round, and the correlation is that of θ with θ + error.
+
+    Parameters
+    ----------
+    coordinates
+        Of the views on their manifold.
+    headings
+        rad.
+    seed
+        Draws views, split and first weights.
+
+    References
+    ----------
+    Rumelhart, Hinton & Williams (1986), Learning representations by back-propagating errors.
+    """
+    chosen = np.random.default_rng(seed).permutation(len(headings))[:SHOWN_TO_NETWORK]
+    ends = np.rint(np.cumsum(list(SHARES.values())) * len(chosen)).astype(int)[:-1]
+    training, validation, _ = np.split(chosen, ends)
+    target = np.column_stack([np.cos(headings), np.sin(headings)])
+
+    def errors(network: Pipeline, views: np.ndarray) -> Float[np.ndarray, "_"]:
+        cosine, sine = network.predict(coordinates[views]).T
+        return heading_errors(np.arctan2(sine, cosine), headings[views], HeadingFrame(0.0, mirror=False))
+
+    with one_thread(), warnings.catch_warnings():
+        # A number of steps is as good an end as any: the validation views judge.
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        networks = [
+            make_pipeline(
+                StandardScaler(),
+                MLPRegressor(
+                    hidden_layer_sizes=(32,),
+                    activation="tanh",
+                    solver="lbfgs",
+                    alpha=decay,
+                    max_iter=2000,
+                    random_state=seed,
+                ),
+            ).fit(coordinates[training], target[training])
+            for decay in DECAYS
+        ]
+        best = min(networks, key=lambda network: float(np.square(errors(network, validation)).mean()))
+        missed = errors(best, chosen)
+    split = np.repeat(list(SHARES), np.diff([0, *ends, len(chosen)]))
+    table = pd.DataFrame(
+        {"view": chosen, "split": split, "heading_rad": headings[chosen], "error_rad": missed}
+    )
+    correlations = {
+        str(name): float(np.corrcoef(part["heading_rad"], part["heading_rad"] + part["error_rad"])[0, 1])
+        for name, part in table.groupby("split")
+    }
+    return Fit(table, correlations)

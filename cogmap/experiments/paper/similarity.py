@@ -1,0 +1,84 @@
+"""Which measure of likeness between images knows views from nearby poses."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from jaxtyping import Float, Int
+
+from arena import Brownian, Camera
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.result import Result
+from cogmap.features import BagOfWords, cosine_distances, earth_mover_distances, pixel_distances
+from cogmap.features.image_distances import motion_distances, pose_agreement
+from cogmap.plots import plot_likeness
+
+QUERIES = 500
+"""Views of a fresh walk whose neighbours are looked for."""
+NEIGHBOURS = 10
+SHOWN = 4
+"""Queries that are drawn with the views that each measure finds most like them."""
+
+
+def similarity(setting: Setting) -> Result:
+    """Compare pixels, bags of words and moved light by the poses of the views that they call alike.
+
+    Pixels and words are those of the perspective camera; light is moved around panoramic strips taken from
+    the same poses. Each measure looks for the ten views most like each of 500 views of a fresh walk.
+    """
+    ahead, around = Camera.perspective(), Camera.panoramic()
+    count = min(QUERIES, setting.views)
+    walk = setting.explore(Brownian(), ahead)
+    fresh = setting.explore(Brownian(), ahead, views=count, fresh=True)
+    poses, asked = poses_of(walk), poses_of(fresh)
+    words = BagOfWords(seed=setting.seed, progress=setting.progress)
+    known = words.fit_transform(walk.views)
+    distances = {
+        "euclidean": pixel_distances(fresh.views, walk.views),
+        "bag_of_words": cosine_distances(words.transform(fresh.views), known),
+        "earth_mover": earth_mover_distances(
+            setting.explore(Brownian(), around, views=count, fresh=True).views,
+            setting.explore(Brownian(), around).views,
+        ),
+    }
+    metrics: dict[str, Any] = {
+        name: pose_agreement(found, asked, poses, neighbours=NEIGHBOURS)._asdict()
+        for name, found in distances.items()
+    }
+    best = {name: found.argmin(axis=1) for name, found in distances.items()}
+    best["pose"] = motion_distances(asked, poses).argmin(axis=1)
+    table = _nearest_table(best, asked, poses)
+    shown = np.linspace(0, count - 1, min(SHOWN, count)).astype(int)
+    pictures = {"query": np.asarray(fresh[shown].views)} | {
+        name: np.asarray(walk[found[shown]].views) for name, found in best.items()
+    }
+    return Result(
+        metrics=metrics, tables={"nearest": table}, figures={"likeness": plot_likeness(table, pictures)}
+    )
+
+
+def _nearest_table(
+    best: dict[str, Int[np.ndarray, "queries"]],
+    asked: Float[np.ndarray, "queries 3"],
+    poses: Float[np.ndarray, "views 3"],
+) -> pd.DataFrame:
+    """Tell how far in pose the view is that each measure finds most like each query."""
+    return pd.concat(
+        [
+            pd.DataFrame(
+                {
+                    "measure": name,
+                    "query": np.arange(len(asked)),
+                    "view": found,
+                    "position_error_m": np.linalg.norm(poses[found, :2] - asked[:, :2], axis=1),
+                    "heading_error_deg": np.rad2deg(
+                        np.abs(np.angle(np.exp(1j * (poses[found, 2] - asked[:, 2]))))
+                    ),
+                }
+            )
+            for name, found in best.items()
+        ],
+        ignore_index=True,
+    )

@@ -1,0 +1,139 @@
+"""By how much the body turned between two panoramas, and which way is north in all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from jaxtyping import Complex64, Float, Float32, Int
+from scipy import fft
+from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
+from scipy.sparse.linalg import cg
+
+from cogmap.features.strips import FREQUENCIES, Strips
+
+COLUMNS = 2 * (FREQUENCIES - 1)
+"""At which a panorama is compared with another."""
+FINEST = 15
+"""Turns per circle beyond which detail is not trusted to tell the turn at first."""
+BLUR = 0.1
+"""Standard deviation of the blur within which flow is linear, rad."""
+WINDOW = 0.16
+"""Standard deviation of the window within which flow is one number, rad."""
+BLOCK = 2048
+"""Pairs compared at a time."""
+OUTLIER = 0.03
+"""Error of a turn (rad) from which on it counts less."""
+ROUNDS = 4
+
+_f = np.arange(FREQUENCIES, dtype=np.float32)
+
+
+def turns(
+    strips: Strips, pairs: Int[np.ndarray, "pairs 2"], others: Strips | None = None
+) -> Float[np.ndarray, "pairs"]:
+    r"""Give the heading of the first view of each pair minus that of the second, rad.
+
+    Both must be from places near to each other. A turn shifts a panorama as a whole, a step shifts what is
+    near more than what is far: with t and ψ the length and direction of the step and u the nearness
+    (1 / distance) of what is seen at azimuth φ, the flow is
+
+    .. math:: s(\varphi) = \Delta + t\,u(\varphi) \sin(\varphi - \psi).
+
+    A correlation over the circle, which takes the mean of s for Δ, is misled wherever one side is nearer than
+    the other: walking around a pillar it turns with it. But s(φ) = s(φ + π) only along ±ψ, and s is Δ there.
+    So Δ is the mean of ½ [s(φ) + s(φ + π)] with weights that are large where both are equal.
+
+    Parameters
+    ----------
+    strips, pairs, others
+        The first of a pair is a row of `strips`, the second one of `others`, or of `strips` when None.
+    """
+    seconds = strips if others is None else others
+    found = [
+        _turns(strips.grey[block[:, 0]], seconds.grey[block[:, 1]])
+        for block in np.split(pairs, range(BLOCK, len(pairs), BLOCK))
+    ]
+    return np.concatenate(found)
+
+
+def _turns(
+    first: Complex64[np.ndarray, "pairs rows frequencies"],
+    second: Complex64[np.ndarray, "pairs rows frequencies"],
+) -> Float[np.ndarray, "pairs"]:
+    sharp = (_f * np.exp(-np.square(_f / FINEST))) ** 2
+    likeness = fft.irfft((first * second.conj()).sum(axis=1) * sharp, 2 * COLUMNS, axis=1)
+    whole = likeness.argmax(axis=1).astype(np.float32) * np.float32(np.pi / COLUMNS)
+    low = np.exp(-0.5 * np.square(BLUR * _f))
+    first = first * low
+    second = second * np.exp(-1j * whole[:, None, None] * _f) * low
+    change = fft.irfft(second - first, COLUMNS, axis=2)
+    slope = fft.irfft((first + second) * (0.5j * _f), COLUMNS, axis=2)
+    moved = _windowed((slope * change).sum(axis=1))
+    told = _windowed(np.square(slope).sum(axis=1))
+    # Where nothing has an edge the flow is taken for none.
+    flow = moved / (told + 1e-3 * told.mean(axis=1, keepdims=True) + 1e-12)
+    behind = np.roll(flow, COLUMNS // 2, axis=1)
+    unequal = np.square(flow - behind)
+    weight = 1 / (unequal + 0.1 * np.median(unequal, axis=1, keepdims=True) + 1e-8)
+    turn = whole + (weight * (flow + behind) / 2).sum(axis=1) / weight.sum(axis=1)
+    return np.asarray(_wrapped(turn.astype(np.float64)))
+
+
+def _windowed(values: Float32[np.ndarray, "pairs columns"]) -> Float32[np.ndarray, "pairs columns"]:
+    spectrum = fft.rfft(values, axis=1) * np.exp(-0.5 * np.square(WINDOW * _f))
+    return np.asarray(fft.irfft(spectrum, COLUMNS, axis=1))
+
+
+def common_north(
+    graph: sp.csr_array, edges: Int[np.ndarray, "edges 2"], turned: Float[np.ndarray, "edges"]
+) -> Float[np.ndarray, "views"]:
+    r"""Give each view a heading, so that headings differ over the edges by the turns found there.
+
+    Headings are summed up along the shortest spanning tree and then relaxed to the least
+
+    .. math:: \sum_{ij} \rho\bigl(\Delta_{ij} - (\theta_i - \theta_j)\bigr) / \ell_{ij}^2
+
+    with a loss ρ that counts outliers less. Each connected piece has a north of its own; the heading of a
+    view without edges is 0.
+
+    Parameters
+    ----------
+    graph
+        Symmetric lengths ℓ between near views.
+    edges
+        Its edges (i, j), each once.
+    turned
+        Δ, rad.
+    """
+    views, (rows, columns) = graph.shape[0], edges.T
+    headings = np.zeros(views)
+    if not len(edges):
+        return headings
+    lengths = np.asarray(graph[rows, columns])
+    signed = sp.csr_array((turned, (rows, columns)), shape=graph.shape)
+    signed = sp.csr_array(signed - signed.T)
+    tree = minimum_spanning_tree(graph)
+    seen = np.diff(graph.indptr) == 0
+    for root in range(views):
+        if not seen[root]:
+            order, before = breadth_first_order(tree, root, directed=False)
+            seen[order] = True
+            steps = np.asarray(signed[order[1:], before[order[1:]]])
+            for view, step in zip(order[1:], steps, strict=True):
+                headings[view] = headings[before[view]] + step
+    index = np.arange(len(edges))
+    signs = np.repeat([1.0, -1.0], len(edges))
+    difference = sp.csr_array((signs, (np.tile(index, 2), edges.T.ravel())), (len(edges), views))
+    trust = 1 / np.square(lengths + 0.1 * np.median(lengths))
+    for _ in range(ROUNDS):
+        left = _wrapped(turned - difference @ headings)
+        weighted = difference.T @ sp.diags_array(trust / (1 + np.square(left / OUTLIER)))
+        matrix = sp.csr_array(weighted @ difference)
+        scale = sp.diags_array(1 / np.maximum(matrix.diagonal(), 1e-300))
+        headings += cg(matrix, weighted @ left, rtol=1e-5, M=scale, maxiter=1000)[0]
+    return np.asarray(_wrapped(headings))
+
+
+def _wrapped(angles: np.ndarray) -> np.ndarray:
+    wrapped: np.ndarray = np.pi - (np.pi - angles) % (2 * np.pi)
+    return wrapped

@@ -1,0 +1,151 @@
+"""Who is next to whom in a cloud."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+from jaxtyping import Bool, Int
+from scipy.sparse.csgraph import connected_components
+
+from cogmap.errors import CogmapError
+from cogmap.graph.knn import Metric, nearest_points
+from cogmap.graph.points import Cloud, checked_cloud, distinct
+
+TINY = float(np.finfo(np.float64).tiny)
+"""Length of an edge between equal points: adds nothing to a path, yet is an edge, where a zero is none."""
+
+DETOUR = 5.0
+"""How many times its length a shortcut counts: enough to go round it wherever there is a way round."""
+
+
+class Components(NamedTuple):
+    """The connected pieces of a graph, the largest first."""
+
+    number: int
+    labels: Int[np.ndarray, "points"]
+    """Which piece each point belongs to, from 0."""
+
+    @property
+    def sizes(self) -> Int[np.ndarray, "pieces"]:
+        """Points of each piece."""
+        return np.bincount(self.labels, minlength=self.number)
+
+
+def neighbour_graph(
+    X: Cloud, neighbours: int = 15, *, metric: Metric = "euclidean", one_sided: int | None = None
+) -> sp.csr_array:
+    """Join every point to its nearest neighbours by edges as long as they are apart.
+
+    An edge runs both ways when either end counts the other among its nearest (`nearest.nearest`: exact up to
+    50,000 points). Repeated points count once: the nearest *other* points are sought among the distinct ones,
+    and each repeat hangs on the first of its kind by an edge of length `TINY`. Nothing else is joined: a
+    cloud in pieces stays in pieces, and a point that is near to nothing stays alone.
+
+    Parameters
+    ----------
+    X
+        Points, one row each, dense or sparse.
+    neighbours
+        How many nearest points to join each point to.
+    metric
+        "euclidean", or "cosine" for bags of words.
+    one_sided
+        How many of the nearest are joined even when they do not count the point among theirs; all of them
+        when None. A point of a thinly sampled place has to look far for its last neighbours, and finds them
+        where it does not belong; these have nearer ones.
+
+    Returns
+    -------
+    A symmetric sparse matrix (points, points) of float64 lengths > 0 in the unit of X.
+
+    Raises
+    ------
+    CogmapError
+        When X is not a finite matrix or has no more distinct points than `neighbours`.
+    """
+    if neighbours < 1:
+        raise CogmapError(f"neighbours is {neighbours}; ask for at least one nearest neighbour")
+    points, first, same = distinct(checked_cloud(X))
+    if points.shape[0] <= neighbours:
+        raise CogmapError(
+            f"{points.shape[0]} distinct points cannot have {neighbours} nearest neighbours each; "
+            "give more points or ask for fewer neighbours"
+        )
+    ends, lengths = nearest_points(points, neighbours, metric=metric)
+    found = ends >= 0
+    if one_sided is not None:
+        found &= _mutual(ends) | (np.arange(neighbours) < one_sided)
+    repeats = np.setdiff1d(np.arange(X.shape[0]), first)
+    rows = np.concatenate([np.repeat(first, found.sum(axis=1)), repeats])
+    columns = np.concatenate([first[ends[found]], first[same.ravel()[repeats]]])
+    # Distinct points can be nearer than rounding tells; the edge must survive that.
+    values = np.concatenate([np.maximum(lengths[found], TINY), np.full(len(repeats), TINY)])
+    graph = sp.csr_array((values.astype(np.float64), (rows, columns)), shape=(X.shape[0], X.shape[0]))
+    return sp.csr_array(graph.maximum(graph.T))
+
+
+def _mutual(ends: Int[np.ndarray, "points neighbours"]) -> Bool[np.ndarray, "points neighbours"]:
+    """Tell which of the points that each counts among its nearest count it among theirs."""
+    points = np.arange(len(ends))[:, None]
+    counted = (points * len(ends) + ends)[ends >= 0]
+    return np.isin(ends * len(ends) + points, counted)
+
+
+def lengthen_shortcuts(graph: sp.csr_array, shared: int = 3) -> sp.csr_array:
+    """Make edges whose ends have fewer than `shared` neighbours in common `DETOUR` times as long.
+
+    Two steps on one sheet of a manifold share most of their surroundings; an edge that jumps from one sheet
+    to another shares hardly any, makes false loops and closes true ones. No edge is lost, for such an edge
+    may also be all that spans a thinly sampled place.
+
+    Parameters
+    ----------
+    graph
+        Symmetric lengths, as from `neighbour_graph`.
+    shared
+        A fifth of the neighbours of a point suits clouds from curves to solids; 0 changes nothing.
+
+    References
+    ----------
+    Jarvis & Patrick (1973), Clustering using a similarity measure based on shared near neighbors.
+    """
+    joined = graph.astype(bool).astype(np.int32)
+    # One more than the common neighbours, so that none at all is still an entry beside every edge.
+    common = sp.csr_array((joined @ joined).multiply(joined) + joined).sorted_indices()
+    longer = graph.sorted_indices()
+    longer.data[common.data <= shared] *= DETOUR
+    return longer
+
+
+def components(graph: sp.csr_array) -> Components:
+    """Split a symmetric graph into its connected pieces."""
+    count, labels = connected_components(graph, directed=False)
+    order = np.argsort(-np.bincount(labels, minlength=count), kind="stable")
+    return Components(int(count), np.argsort(order)[labels])
+
+
+def neighbourhood_means(graph: sp.csr_array) -> sp.csr_array:
+    """Make the matrix that gives each point the mean of itself and those it is joined to."""
+    joined = sp.csr_array(graph.astype(bool) + sp.eye_array(graph.shape[0]))
+    return sp.csr_array(sp.diags_array(1 / joined.sum(axis=1)) @ joined)
+
+
+def checked_graph(graph: sp.csr_array) -> sp.csr_array:
+    """Pass a symmetric graph of positive lengths through, without the zeros it may store.
+
+    Raises
+    ------
+    CogmapError
+        When it is not square, not symmetric, or has a length that is not positive and finite.
+    """
+    graph = graph.astype(np.float64)
+    graph.eliminate_zeros()
+    if graph.shape[0] != graph.shape[1]:
+        raise CogmapError(f"the graph has shape {graph.shape}; expected a square, (points, points)")
+    if not (np.isfinite(graph.data) & (graph.data > 0)).all():
+        raise CogmapError("the graph has lengths that are not positive and finite; leave those edges out")
+    if abs(graph - graph.T).nnz:
+        raise CogmapError("the graph is not symmetric; give each edge its length in both directions")
+    return graph

@@ -1,0 +1,372 @@
+"""The cognitive map: from views and odours to place cells and head-direction cells."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from jaxtyping import Float
+from numpy.typing import ArrayLike
+from torch import Tensor
+from tqdm import tqdm
+
+from cogmap.errors import CogmapError
+from cogmap.inputs import check_views, checked_count, log_odours
+from cogmap.map.activity import Activity
+from cogmap.map.storage import read_map, write_map
+from cogmap.threads import one_thread
+from neurons.errors import NeuronsError
+from neurons.layers.retina import Retina
+from neurons.merging import forked, merge
+from neurons.network import EPOCHS, IN_ORDER, Layers
+
+BATCH = 256
+"""Views learnt together; fixed, so that the same seed gives the same map."""
+
+
+class CognitiveMap:
+    """A map of a place, learnt from sight and smell alone.
+
+    It is given images and concentrations and nothing else: no poses, no motor signals, no times. Afterwards
+    sight alone tells the recalled smell (hence place) and the heading, through place cells and head-direction
+    cells. Where views come in the order of a walk, it also learns where places lie, as a metric map, and
+    takes a slow offset out of heading; shuffled views do no harm, but teach neither.
+
+    Parameters
+    ----------
+    charts
+        Local charts of the view manifold; about a fifth as many as views.
+    components
+        Principal components of the view code.
+    most_charts
+        How many charts it may come to when their number is doubled, again and again, until they agree; None
+        adds none.
+    place_cells, heading_cells
+        Sizes of the two populations.
+    epoch
+        Views per epoch when learning from a stream with `partial_fit`; `fit` sets it to the views it is
+        given.
+    seed
+        Of the initial weights and the order of views; the same seed gives the same bits.
+
+    Attributes
+    ----------
+    trusted_
+        Whether the charts agree well enough for headings to be right.
+    reason_
+        Why not, in words; empty when trusted.
+    metric_reason_
+        Why there is no metric map, in words; empty when there is one.
+    seconds_
+        Time spent per stage of development in this process, s.
+    view_shape_, odorants_
+        (height, width, 3) of the views and number of odorants it was fitted to.
+
+    Raises
+    ------
+    CogmapError
+        For views or odours of the wrong shape, type or range, and for counts below 1.
+    """
+
+    def __init__(
+        self,
+        charts: int = 3000,
+        components: int = 60,
+        *,
+        most_charts: int | None = None,
+        place_cells: int = 150,
+        heading_cells: int = 60,
+        epoch: int = 17_000,
+        seed: int = 0,
+    ) -> None:
+        self.charts = charts
+        self.components = components
+        self.most_charts = most_charts
+        self.place_cells = place_cells
+        self.heading_cells = heading_cells
+        self.epoch = epoch
+        self.seed = seed
+
+    def fit(self, views: Any, odours: ArrayLike, *, progress: bool = False) -> CognitiveMap:
+        """Learn a map from scratch, as epochs of `partial_fit` over the views.
+
+        Their order is random in every epoch but that of the gauge, which takes them as they are given.
+
+        Parameters
+        ----------
+        views
+            (views, height, width, 3) uint8; an array, or anything lazy whose slices are arrays.
+        odours
+            (views, odorants) concentrations > 0.
+        progress
+            Whether to show a bar on stderr.
+        """
+        check_views(views)
+        smells = torch.from_numpy(log_odours(odours, views=views.shape[0]))
+        if views.shape[0] < checked_count("charts", self.charts):
+            raise CogmapError(
+                f"there are {views.shape[0]} views for {self.charts} charts; "
+                "record more views or use fewer charts: about a fifth as many as views"
+            )
+        self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=views.shape[0])
+        order = np.random.default_rng(self.seed)
+        with one_thread(), tqdm(total=sum(EPOCHS.values()), unit="epoch", disable=not progress) as bar:
+            started = time.perf_counter()
+            strips = torch.cat([strip for _, strip in self._strips(views)])
+            self.seconds_["retina"] = time.perf_counter() - started
+            count = views.shape[0]
+            while int(self._layers.age) < sum(EPOCHS.values()) * count:
+                started = time.perf_counter()
+                self._layers.mature()
+                stage = self._layers.stage
+                bar.set_description(stage)
+                epoch = np.arange(count) if stage == IN_ORDER else order.permutation(count)
+                for rows in torch.from_numpy(epoch).split(BATCH):
+                    self._layers.learn(strips[rows], smells[rows])
+                self.seconds_[stage] = self.seconds_.get(stage, 0.0) + time.perf_counter() - started
+                bar.n = int(self._layers.age) // count
+                bar.refresh()
+        return self
+
+    def partial_fit(self, views: Any, odours: ArrayLike, *, jump: bool = False) -> CognitiveMap:
+        """Learn from the next views of a stream.
+
+        Time and memory per view do not depend on how many came before. See `neurons.network.Layers` for what
+        is learnt when.
+
+        Parameters
+        ----------
+        views, odours
+            As for `fit`, in the order of a walk if there is one.
+        jump
+            Whether these views do not follow the last ones, as where another walk begins.
+        """
+        fresh = not hasattr(self, "_layers")
+        check_views(views, None if fresh else self.view_shape_)
+        smells = torch.from_numpy(
+            log_odours(odours, views=views.shape[0], odorants=None if fresh else self.odorants_)
+        )
+        if fresh:
+            self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=checked_count("epoch", self.epoch))
+        if jump:
+            self._layers.gauge.jump()
+        with one_thread():
+            for rows, strip in self._strips(views):
+                self._layers.learn(strip, smells[rows])
+        return self
+
+    def fork(self) -> CognitiveMap:
+        """Give another explorer a map of the same charts, which has learnt nothing yet in the present stage.
+
+        So what it learns is not what this one has learnt already, and `merge` adds it. Stages whose work can
+        be shared in this way are those of `neurons.merging.SUMS`: olfaction, gauge and afferents.
+
+        Raises
+        ------
+        CogmapError
+            In a stage in which units compete for views, so that learning depends on their order.
+        """
+        self._check_grown()
+        other = CognitiveMap(**self._settings())
+        other._retina, other.view_shape_, other.odorants_ = self._retina, self.view_shape_, self.odorants_
+        other.seconds_ = {}
+        with one_thread(), _at_the_edge():
+            other._layers = forked(self._layers)
+        return other
+
+    def merge(self, other: CognitiveMap) -> CognitiveMap:
+        """Add what another map, grown from the same charts, has learnt in the present stage.
+
+        Two maps that each learnt half of the views are then as one that learnt them all, but for rounding.
+        The other is left as it is, and the next view follows the last one of this map.
+
+        Raises
+        ------
+        CogmapError
+            When the other differs in its charts, in what it learnt in earlier stages, in its stage or its
+            sizes, or when the stage is one in which units compete.
+
+        Examples
+        --------
+        Two explorers share the third stage and all that follows but the fourth:
+
+        >>> cmap = CognitiveMap(epoch=3000)
+        >>> cmap.partial_fit(views, odours)  # 10 epochs: code and charts
+        >>> away = cmap.fork()  # or many; `save` and `load` take them to other machines
+        >>> cmap.partial_fit(views_here, odours_here, jump=True)
+        >>> away.partial_fit(views_there, odours_there, jump=True)
+        >>> cmap.merge(away)  # as if it had seen both
+        """
+        self._check_grown()
+        other._check_grown()
+        with one_thread(), _at_the_edge():
+            merge(self._layers, other._layers)
+        return self
+
+    def perceive(self, views: Any = None, *, odours: ArrayLike | None = None) -> Activity:
+        """Let the map look at views, or smell odours in the dark, which tells place only.
+
+        Raises
+        ------
+        CogmapError
+            When the map is not grown yet, or when given both or neither.
+        """
+        self._check_grown()
+        if (views is None) == (odours is None):
+            raise CogmapError("give either views, or odours for a look in the dark; not both or neither")
+        with one_thread():
+            if odours is not None:
+                return self._smell(torch.from_numpy(log_odours(odours, odorants=self.odorants_)))
+            check_views(views, self.view_shape_)
+            if not self.trusted_:
+                warnings.warn(f"this map is not to be trusted: {self.reason_}", stacklevel=2)
+            parts = [self._look(strip) for _, strip in self._strips(views)]
+        return Activity(*(torch.cat(part).numpy() for part in zip(*parts, strict=True)))
+
+    def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
+        """Give the principal components of views, the space of the view manifold, float32."""
+        self._check_grown()
+        check_views(views, self.view_shape_)
+        with one_thread():
+            return torch.cat([self._layers.code(strip) for _, strip in self._strips(views)]).numpy()
+
+    @property
+    def trusted_(self) -> bool:
+        """Whether the charts agree well enough for headings to be right."""
+        return not self.reason_
+
+    @property
+    def reason_(self) -> str:
+        """Why this map is not trusted; empty when it is."""
+        self._check_grown()
+        return self._layers.complain()
+
+    @property
+    def metric_reason_(self) -> str:
+        """Why this map tells no positions, whatever it tells of heading; empty when it does."""
+        self._check_grown()
+        return self._layers.complain_of_metric()
+
+    @property
+    def phase_eigenvalue_(self) -> float:
+        """How well the charts agree on phase, 1 at best; NaN before they have tried."""
+        self._check_grown()
+        return float(self._layers.agreement[1])
+
+    def save(self, path: str | Path) -> None:
+        """Write the map to a new folder: `weights.safetensors` and `map.json`.
+
+        Raises
+        ------
+        CogmapError
+            When something is at the path already, or it cannot be written.
+        """
+        self._check_grown()
+        learnt = {
+            "view_shape": self.view_shape_,
+            "odorants": self.odorants_,
+            "epoch": self._layers.epoch,
+            "charts": len(self._layers.charts),
+        }
+        write_map(Path(path), self._layers.state_dict(), self._settings(), learnt)
+
+    @classmethod
+    def load(cls, path: str | Path) -> CognitiveMap:
+        """Read a map that `save` wrote; it perceives the same bits.
+
+        Raises
+        ------
+        CogmapError
+            When it is missing, damaged or of another version.
+        """
+        weights, settings, learnt = read_map(Path(path))
+        try:
+            loaded = cls(**settings)
+            loaded._begin(
+                tuple(learnt["view_shape"]),
+                learnt["odorants"],
+                epoch=learnt["epoch"],
+                charts=learnt["charts"],
+            )
+            loaded._layers.load_state_dict(weights)
+        except (KeyError, TypeError, RuntimeError) as error:
+            raise CogmapError(f"{path} does not hold a whole map: {error}") from None
+        return loaded
+
+    def _settings(self) -> dict[str, Any]:
+        return {
+            "charts": self.charts,
+            "components": self.components,
+            "most_charts": self.most_charts,
+            "place_cells": self.place_cells,
+            "heading_cells": self.heading_cells,
+            "epoch": self.epoch,
+            "seed": self.seed,
+        }
+
+    def _begin(
+        self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, charts: int | None = None
+    ) -> None:
+        first = checked_count("charts", self.charts)
+        most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
+        self._retina = Retina(*view_shape[:2])
+        self.view_shape_, self.odorants_ = view_shape, odorants
+        self.seconds_: dict[str, float] = {}
+        with one_thread():  # even the initial weights, orthonormal by QR, depend on the number of threads
+            self._layers = Layers(
+                self._retina.features,
+                odorants,
+                charts=first if charts is None else charts,
+                most_charts=most,
+                components=checked_count("components", self.components, 3),
+                place_cells=checked_count("place_cells", self.place_cells),
+                heading_cells=checked_count("heading_cells", self.heading_cells),
+                epoch=epoch,
+                generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
+            )
+
+    def _check_grown(self) -> None:
+        if not hasattr(self, "_layers"):
+            raise CogmapError("this map has learnt nothing yet; call fit or partial_fit first")
+
+    def _strips(self, views: Any) -> Iterator[tuple[slice, Float[Tensor, "views features"]]]:
+        """Pass views through the retina in fixed batches."""
+        for start in range(0, views.shape[0], BATCH):
+            rows = slice(start, start + BATCH)
+            yield rows, self._retina(torch.from_numpy(np.ascontiguousarray(views[rows])))
+
+    def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, ...]:
+        """Rates of both populations, heading, recalled odour and position."""
+        layers = self._layers
+        codes = layers.code(strips)
+        excited = layers.recall.excite(layers.charts, codes)
+        heading, odour = layers.recall(layers.charts, codes, excited)
+        position, offset = layers.gauge(layers.place, odour)
+        angle = heading + offset
+        phase = torch.atan2(angle.sin(), angle.cos())
+        return layers.place.afferents(excited), layers.heading.afferents(excited), phase, odour, position
+
+    def _smell(self, odours: Float[Tensor, "views odorants"]) -> Activity:
+        blind = np.full(len(odours), np.nan, np.float32)
+        return Activity(
+            place=self._layers.place.tuning(odours).numpy(),
+            heading=np.repeat(blind[:, None], self.heading_cells, axis=1),
+            phase=blind,
+            odour=odours.numpy(),
+            position=self._layers.gauge(self._layers.place, odours).position.numpy(),
+        )
+
+
+@contextmanager
+def _at_the_edge() -> Iterator[None]:
+    """Refuse in the same words what the layers refuse."""
+    try:
+        yield
+    except NeuronsError as error:
+        raise CogmapError(str(error)) from None

@@ -1,0 +1,165 @@
+"""What a folder of results holds: figures, numbers, tables, and what wrote them."""
+
+from __future__ import annotations
+
+import base64
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+import pandas as pd
+from pyarrow import ArrowException
+
+from cogmap.errors import CogmapError
+from cogmap.experiments.outputs import METRICS
+from cogmap.experiments.provenance import ABOUT
+from cogmap.pages.report.captions import caption
+from cogmap.tables import as_rows, shown
+
+SWEPT = ("table.parquet", "table.csv")
+"""The table of a sweep, in the order in which they are tried."""
+LONGEST = 500
+"""Rows of a sweep's table that are shown."""
+PARAMETERS = ("experiment", "arena", "views", "charts", "seed")
+"""Metrics that were not found but given."""
+_PNG = b"\x89PNG\r\n\x1a\n"
+_Read = TypeVar("_Read")
+
+
+class Picture(NamedTuple):
+    """A figure, whole."""
+
+    name: str
+    caption: str
+    uri: str
+    """A data URI."""
+    width: int
+    height: int
+
+
+class Table(NamedTuple):
+    """Cells as they are printed."""
+
+    name: str
+    note: str
+    columns: list[str]
+    rows: list[list[str]]
+    opened: bool
+    """Whether it is the result itself rather than the data behind a figure."""
+
+
+@dataclass(frozen=True)
+class Contents:
+    """Everything that a report shows."""
+
+    title: str
+    parameters: list[tuple[str, str, str]]
+    """Name, value and unit of what was given."""
+    figures: list[tuple[str, str, str]]
+    """Name, value and unit of what was found."""
+    pictures: list[Picture]
+    tables: list[Table]
+    files: dict[str, str]
+    """Text of rooms and plans, by the name of the file."""
+    command: str
+    """That repeats it; empty when nobody wrote it down."""
+    versions: dict[str, str]
+
+
+def read_contents(folder: Path) -> Contents:
+    """Read what a demo, an experiment or a sweep left in a folder.
+
+    Raises
+    ------
+    CogmapError
+        When it is no such folder, or a file in it is damaged.
+    """
+    table = next((folder / name for name in SWEPT if (folder / name).is_file()), None)
+    if not (folder / METRICS).is_file() and table is None:
+        raise CogmapError(
+            f"{folder} is not the result of a demo, an experiment or a sweep: it has neither {METRICS} nor "
+            f"{SWEPT[1]}; give a folder that one of them wrote"
+        )
+    metrics, about = (
+        _read(folder / name, _record) if (folder / name).is_file() else {} for name in (METRICS, ABOUT)
+    )
+    given = {name: metrics[name] for name in PARAMETERS if name in metrics}
+    found = {name: value for name, value in metrics.items() if name not in given}
+    kind = "sweep" if table is not None else str(given.get("experiment", "demo"))
+    place = f" in {given['arena']}" if "arena" in given else ""
+    behind = [path for path in sorted(folder.glob("*.parquet")) if path.name not in SWEPT]
+    return Contents(
+        title=f"{kind.replace('_', ' ').capitalize()}{place}",
+        parameters=as_rows({**given, **about.get("different", {})}),
+        figures=as_rows(found),
+        pictures=[_read(path, lambda path: _picture(path, folder)) for path in sorted(folder.rglob("*.png"))],
+        tables=[
+            *([] if table is None else [_read(table, _whole)]),
+            *(_read(path, _summary) for path in behind),
+        ],
+        files={path.name: _read(path, _text) for path in sorted(folder.glob("*.toml"))},
+        command=about.get("command", ""),
+        versions=about.get("versions", {}),
+    )
+
+
+def _read(path: Path, how: Callable[[Path], _Read]) -> _Read:
+    try:
+        return how(path)
+    except OSError as error:
+        raise CogmapError(f"cannot read {path}: {error.strerror or error}") from None
+    except (ValueError, ArrowException) as error:
+        raise CogmapError(f"{path} is damaged: {error}; run what wrote it again") from None
+
+
+def _record(path: Path) -> dict[str, Any]:
+    record = json.loads(path.read_text("utf-8"))
+    if not isinstance(record, dict):
+        raise ValueError("it holds no record")  # noqa: TRY004
+    return record
+
+
+def _text(path: Path) -> str:
+    return path.read_text("utf-8")
+
+
+def _picture(path: Path, folder: Path) -> Picture:
+    data = path.read_bytes()
+    if not data.startswith(_PNG) or len(data) < 24:
+        raise ValueError("it is no PNG picture")
+    width, height = (int.from_bytes(data[start : start + 4]) for start in (16, 20))
+    name = path.relative_to(folder).with_suffix("").as_posix()
+    return Picture(
+        name, caption(path.stem), f"data:image/png;base64,{base64.b64encode(data).decode()}", width, height
+    )
+
+
+def _whole(path: Path) -> Table:
+    """Print the rows themselves."""
+    table = pd.read_parquet(path) if path.suffix == ".parquet" else pd.read_csv(path)
+    rows = [[_cell(value) for value in row] for row in table.head(LONGEST).itertuples(index=False)]
+    cut = f", the first {LONGEST} of which are shown" if len(table) > LONGEST else ""
+    return Table(path.name, f"{len(table)} rows{cut}", [str(name) for name in table], rows, opened=True)
+
+
+def _summary(path: Path) -> Table:
+    """Print one row per column, with its range where it is a number."""
+    table = pd.read_parquet(path)
+    rows = []
+    for name, values in table.items():
+        if pd.api.types.is_numeric_dtype(values) and not pd.api.types.is_bool_dtype(values):
+            spread = [_cell(float(values.quantile(share))) for share in (0, 0.5, 1)]
+        else:
+            spread = ["", f"{values.nunique()} different", ""]
+        rows.append([str(name), *spread])
+    columns = ["column", "least", "median", "greatest"]
+    return Table(path.name, f"{len(table)} rows", columns, rows, opened=False)
+
+
+def _cell(value: object) -> str:
+    if value is None or (isinstance(value, float) and np.isnan(value)):
+        return "–"
+    return shown(value)

@@ -1,0 +1,73 @@
+"""The weights from charts to cells, where the charts' own views were taken."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float, Int
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from cogmap.cells.checks import check_array
+from cogmap.plots.cells.place_cells import COLOURS
+from cogmap.plots.style import (
+    QUARTERS,
+    colour_bar,
+    direction_colours,
+    heading_bar,
+    new_figure,
+    tidy,
+    tidy_room,
+)
+
+COUNT = 5
+"""Cells of each population."""
+
+
+def plot_afferents(
+    place: Float[np.ndarray, "charts place_cells"],
+    heading: Float[np.ndarray, "charts heading_cells"],
+    preferred: Float[np.ndarray, "charts 3"],
+) -> Figure:
+    """Draw the weights of five place cells and five head-direction cells, a dot per chart.
+
+    Above, charts lie where their preferred view was taken and are coloured by their weight to a place cell,
+    the strongest on top. Below, their weight to a heading cell stands over the heading of that view.
+
+    Parameters
+    ----------
+    place, heading
+        Weights, Hz.
+    preferred
+        Pose of the view that each chart prefers: m, m, rad.
+
+    Raises
+    ------
+    CogmapError
+        For values that are not finite or shapes that do not fit.
+    """
+    check_array("preferred", preferred, (None, 3))
+    check_array("place", place, (len(preferred), None))
+    check_array("heading", heading, (len(preferred), None))
+    figure = new_figure(13.0, 5.2)
+    above, below = figure.subplots(2, COUNT)
+    strongest = max(float(place.max()), 1e-9)
+    for axes, cell in zip(above, _chosen(place), strict=False):
+        order = np.argsort(place[:, cell])
+        tidy_room(axes, title=f"place cell {cell}")
+        x, y = preferred[order, :2].T
+        axes.scatter(x, y, s=5, c=place[order, cell], cmap=COLOURS, vmin=0, vmax=strongest, linewidths=0)
+    colour_bar(above[-1], ScalarMappable(Normalize(0, strongest), COLOURS), "weight (Hz)")
+    for axes, cell in zip(below, _chosen(heading), strict=False):
+        tidy(axes, x="heading of the chart's view (°)", y="weight (Hz)", title=f"head-direction cell {cell}")
+        angles = preferred[:, 2]
+        axes.scatter(np.rad2deg(angles), heading[:, cell], s=4, c=direction_colours(angles), linewidths=0)
+        axes.set(xlim=(-180, 180), xticks=QUARTERS, ylim=(0, 1.05 * max(float(heading.max()), 1e-9)))
+    heading_bar(below[-1])
+    return figure
+
+
+def _chosen(weights: Float[np.ndarray, "charts cells"]) -> Int[np.ndarray, "chosen"]:
+    """Take cells evenly."""
+    cells = weights.shape[1]
+    return np.unique((np.arange(COUNT) + 0.5).astype(int) * cells // COUNT)

@@ -1,0 +1,84 @@
+"""A few cells of several populations: where they fire, and in which direction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from cogmap.cells.rates.maps import RateMaps
+from cogmap.errors import CogmapError
+from cogmap.plots.cells.place_cells import COLOURS
+from cogmap.plots.style import ABSENT, CYCLIC, INK, QUARTERS, SMALL, SOFT, TINY, new_figure, tidy
+
+COUNT = 6
+"""Cells of a population."""
+WIDTH = 1.7
+"""Of a cell, in inches."""
+THINNEST = 0.25
+"""Height of a map over its width; that of a path is stretched to it."""
+
+
+class Tuning(NamedTuple):
+    """What is drawn of a population."""
+
+    maps: RateMaps
+    curves: Float[np.ndarray, "cells bins"]
+    """`tuning_curves` of the same cells, Hz."""
+
+
+def plot_examples(populations: Mapping[str, Tuning]) -> Figure:
+    """Draw six cells of each population, evenly chosen: rate map above, rate by true heading below.
+
+    Both are fractions of their own peak, which is written above the map in Hz. Silent cells are left out.
+
+    Raises
+    ------
+    CogmapError
+        Without a population.
+    """
+    if not populations:
+        raise CogmapError("no populations to draw; give the maps and curves of at least one")
+    edges = next(iter(populations.values())).maps.edges
+    aspect = max(float(np.ptp(edges.y) / np.ptp(edges.x)), THINNEST)
+    height = WIDTH * (aspect + 0.45) + 0.5
+    figure = new_figure(COUNT * WIDTH + 0.7, height * len(populations))
+    lines = figure.subfigures(len(populations), 1, squeeze=False, hspace=0.03)[:, 0]
+    for line, (name, tuning) in zip(lines, populations.items(), strict=True):
+        line.suptitle(name, fontsize=SMALL + 1, color=INK)
+        panels = line.subplots(2, COUNT, squeeze=False, height_ratios=[aspect, 0.45])
+        firing = np.flatnonzero(np.nanmax(tuning.maps.rates, axis=(1, 2)) > 0)
+        chosen = firing[(np.arange(min(COUNT, len(firing))) + 0.5).astype(int) * len(firing) // COUNT]
+        for axes in panels[:, len(chosen) :].ravel():
+            axes.set_axis_off()
+        for (above, below), cell in zip(panels.T, chosen, strict=False):
+            _draw_map(above, tuning.maps, int(cell), first=above is panels[0, 0])
+            _draw_curve(below, tuning.curves[cell], first=above is panels[0, 0])
+    return figure
+
+
+def _draw_map(axes: Axes, maps: RateMaps, cell: int, *, first: bool) -> None:
+    peak = float(np.nanmax(maps[cell]))
+    tidy(axes, x="x (m)" if first else "", y="y (m)" if first else "")
+    axes.set_title(f"cell {cell}: {peak:.2g} Hz", fontsize=TINY, color=INK)
+    axes.pcolormesh(*maps.edges, np.ma.masked_invalid(maps[cell] / peak), cmap=COLOURS, vmin=0, vmax=1)
+    if np.ptp(maps.edges.y) > THINNEST * np.ptp(maps.edges.x):
+        axes.set_aspect("equal")
+    axes.set_facecolor(ABSENT)
+    if not first:
+        axes.set(xticks=[], yticks=[])
+
+
+def _draw_curve(axes: Axes, curve: Float[np.ndarray, " bins"], *, first: bool) -> None:
+    degrees = -180 + (np.arange(len(curve)) + 0.5) * 360 / len(curve)
+    part = curve / np.nanmax(curve)
+    tidy(axes, x="heading (°)" if first else "", y="rate / peak" if first else "")
+    axes.bar(degrees, np.nan_to_num(part), width=360 / len(curve), color=CYCLIC((degrees + 180) / 360))
+    axes.axhline(0, color=SOFT, linewidth=0.4)
+    axes.set(xlim=(-180, 180), ylim=(0, 1.05), xticks=QUARTERS, yticks=[0, 1])
+    if not first:
+        axes.set(xticklabels=[], yticklabels=[])

@@ -1,0 +1,53 @@
+"""A room as the animal sees it: a contact sheet."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.figure import Figure
+
+from arena.bodies.disc import Body
+from arena.eye.camera import Camera
+from arena.rooms.arena import Arena
+from cogmap.plots.rooms.views import WIDTH, draw_views, sheet_height
+from cogmap.plots.style import INK, SMALL, new_figure
+from cogmap.shape.rips import euclidean, farthest_points
+
+VIEWS = 6
+CANDIDATES = 1000
+"""Free places among which those of the views are picked."""
+GOLDEN = np.pi * (3 - np.sqrt(5))
+"""Headings this far apart (rad) never repeat and soon point everywhere."""
+
+
+def plot_sheet(arena: Arena) -> Figure:
+    """Draw six perspective and six panoramic views of a room, from the same places far from each other.
+
+    Parameters
+    ----------
+    arena
+        The room; the same room gives the same sheet.
+
+    Raises
+    ------
+    ArenaError
+        When the body fits nowhere.
+    """
+    poses = _spread(arena)
+    ahead, around = (
+        camera.render(arena, poses) for camera in (Camera.perspective(), Camera.panoramic(720, 120))
+    )
+    heights = sheet_height(ahead, 3), sheet_height(around, 2)
+    figure = new_figure(WIDTH, sum(heights) + 0.3)
+    figure.suptitle(arena.name, fontsize=SMALL, color=INK, parse_math=False)
+    above, below = figure.subfigures(2, squeeze=False, height_ratios=heights).ravel()
+    draw_views(above, ahead, poses, 3, panoramic=False)
+    draw_views(below, around, poses, 2, panoramic=True)
+    return figure
+
+
+def _spread(arena: Arena) -> Float[np.ndarray, "views 3"]:
+    xy = arena.sample_free(CANDIDATES, Body().radius, np.random.default_rng(0))
+    taken = farthest_points(euclidean(xy), VIEWS, 0).indices
+    headings = (GOLDEN * np.arange(len(taken)) + np.pi) % (2 * np.pi) - np.pi
+    return np.column_stack([xy[taken], headings])

@@ -1,0 +1,99 @@
+"""Planned ways among obstacles, from above (Fig. 7)."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+from jaxtyping import Float
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+from arena.bodies.disc import Body
+from arena.rooms.arena import Arena
+from cogmap.cells.checks import check_array
+from cogmap.plots.rooms.room import draw_surfaces
+from cogmap.plots.style import BAD, GOOD, INK, SMALL, new_figure, tidy_room
+
+COLUMNS = 3
+ARROW = 0.2
+"""Length of the arrow that points where the body looks, m."""
+MINE, THEIRS, START, GOAL = "visual roadmap", "OMPL's PRM", "start", "goal"
+
+
+def plot_routes(
+    arena: Arena,
+    routes: list[tuple[Float[np.ndarray, "_ 3"], Float[np.ndarray, "_ 3"] | None]],
+) -> Figure:
+    """Draw each route in the room: the poses of the views on the way (arrows), and the peer's path (dashed).
+
+    The shaded band is what the body sweeps; start is a circle, goal a square.
+
+    Parameters
+    ----------
+    arena
+        The room.
+    routes
+        Poses (x, y, heading) in m and rad of the visual roadmap and, if there is one, of the PRM.
+
+    Raises
+    ------
+    CogmapError
+        For poses that are not finite triples.
+    """
+    for mine, theirs in routes:
+        for path in (mine, theirs):
+            if path is not None:
+                check_array("route", path, (None, 3))
+    columns = min(COLUMNS, max(1, len(routes)))
+    rows = max(1, -(-len(routes) // columns))
+    x0, y0, x1, y1 = arena.walkable.bounds
+    width = 12.0 / columns
+    figure = new_figure(12.0, rows * (width * (y1 - y0) / (x1 - x0) + 0.4) + 0.4)
+    grid = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axes in grid[len(routes) :]:
+        axes.set_axis_off()
+    for axes, (mine, theirs) in zip(grid, routes, strict=False):
+        tidy_room(axes, title=f"{len(mine) - 2} views on the way")
+        draw_surfaces(axes, arena)
+        for text in axes.texts:
+            text.set_visible(False)
+        _draw_route(axes, mine)
+        if theirs is not None:
+            axes.plot(*theirs[:, :2].T, "--", color=BAD, linewidth=1.3, zorder=8, label=THEIRS)
+        axes.set(xlim=(x0 - 0.1, x1 + 0.1), ylim=(y0 - 0.1, y1 + 0.1))
+    if routes:
+        drawn = [pair for axes in grid for pair in zip(*axes.get_legend_handles_labels(), strict=True)]
+        known = {label: handle for handle, label in drawn if label in (MINE, THEIRS, START, GOAL)}
+        figure.legend(
+            known.values(),
+            known.keys(),
+            loc="outside lower center",
+            ncols=4,
+            fontsize=SMALL,
+            labelcolor=INK,
+            frameon=False,
+        )
+    return figure
+
+
+def _draw_route(axes: Axes, path: Float[np.ndarray, "steps 3"]) -> None:
+    swept = shapely.LineString(path[:, :2]).buffer(Body().radius)
+    outline = shapely.get_coordinates(swept.exterior)
+    axes.add_patch(Polygon(outline, facecolor=GOOD, alpha=0.15, linewidth=0, zorder=1.5))
+    x, y, heading = path.T
+    axes.plot(x, y, color=GOOD, linewidth=1.3, zorder=8, label=MINE)
+    axes.quiver(
+        x,
+        y,
+        ARROW * np.cos(heading),
+        ARROW * np.sin(heading),
+        angles="xy",
+        scale_units="xy",
+        scale=1,
+        color=GOOD,
+        width=0.005,
+        zorder=8.5,
+    )
+    axes.plot(*path[0, :2], "o", color=INK, markersize=7, zorder=9, linestyle="none", label=START)
+    axes.plot(*path[-1, :2], "s", color=INK, markersize=7, zorder=9, linestyle="none", label=GOAL)

@@ -1,0 +1,1 @@
+"""Figures of bars and embeddings."""

@@ -1,0 +1,98 @@
+"""The loops and voids of clouds, and how far they stand out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, NullLocator, StrMethodFormatter
+
+from cogmap.errors import CogmapError
+from cogmap.plots.style import BAD, GOOD, INK, SMALL, SOFT, TINY, new_figure, tidy
+from cogmap.shape.homology import Betti
+
+BARS = 12
+"""The largest that are drawn."""
+TICKS = (1, 1.2, 1.5, 2, 3, 5, 10, 20, 50, 100)
+FINE_TICKS = (1, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2, 2.3)
+NAMES = {1: "loops", 2: "voids"}
+
+
+def plot_barcodes(results: Mapping[str, Betti]) -> Figure:
+    """Draw, for every result and dimension, the largest bars as π = death / birth against the threshold.
+
+    One line of panels per result: loops (H₁) and voids (H₂). Bars that count are coloured; the dashed line is
+    what a bar must exceed. The axes of a dimension are logarithmic and the same for all results.
+
+    Parameters
+    ----------
+    results
+        From `betti`, by the name of the cloud.
+
+    Raises
+    ------
+    CogmapError
+        Without any result, and when none goes beyond pieces.
+    """
+    highest = max((len(result.numbers) - 1 for result in results.values()), default=0)
+    if highest < 1:
+        raise CogmapError(
+            f"{len(results)} results and none has loops; give some of betti(X, max_dimension=1 or 2)"
+        )
+    figure = new_figure(10.0, 2.2 * len(results))
+    lines = figure.subfigures(len(results), 1, squeeze=False, hspace=0.06)[:, 0]
+    limits = [_limit(results, dimension) for dimension in range(1, highest + 1)]
+    for line, (name, result) in zip(lines, results.items(), strict=True):
+        line.suptitle(f"{name}: {_summary(result)}", fontsize=SMALL + 1, color=INK)
+        panels = line.subplots(1, highest, squeeze=False)[0]
+        for dimension, (axes, limit) in enumerate(zip(panels, limits, strict=True), start=1):
+            if dimension < len(result.numbers):
+                _draw_bars(axes, result, dimension, limit)
+            else:
+                axes.set_axis_off()
+    return figure
+
+
+def _summary(result: Betti) -> str:
+    return ", ".join(
+        f"b{dimension} = {number} ({votes} of {result.draws} draws)"
+        for dimension, (number, votes) in enumerate(zip(result.numbers, result.votes, strict=True))
+    )
+
+
+def _limit(results: Mapping[str, Betti], dimension: int) -> float:
+    found = [
+        np.append(result.ratios[dimension], result.thresholds[dimension])
+        for result in results.values()
+        if dimension < len(result.numbers)
+    ]
+    together = np.concatenate(found)
+    return 1.15 * float(together[np.isfinite(together)].max())
+
+
+def _draw_bars(axes: Axes, result: Betti, dimension: int, limit: float) -> None:
+    found, threshold = result.ratios[dimension], result.thresholds[dimension]
+    shown = np.minimum(found[:BARS], limit)
+    colours = [GOOD if rank < result.numbers[dimension] else SOFT for rank in range(len(shown))]
+    tidy(axes, x=f"π of H{dimension} ({NAMES[dimension]}), death / birth, no unit", y="bar, largest first")
+    axes.set_xscale("log")
+    axes.barh(np.arange(len(shown)), shown - 1, left=1, height=0.7, color=colours)
+    axes.axvline(threshold, color=BAD, linewidth=1.2, linestyle="--")
+    axes.annotate(
+        f"threshold {threshold:.2f}",
+        (threshold, 1),
+        (3, -2),
+        xycoords=axes.get_xaxis_transform(),
+        textcoords="offset points",
+        va="top",
+        fontsize=TINY,
+        color=BAD,
+    )
+    axes.xaxis.set_major_locator(FixedLocator(FINE_TICKS if limit < 2.5 else TICKS))
+    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set(xlim=(1, limit), ylim=(max(len(shown), 3) - 0.4, -1.6), yticks=[])
+    if not len(shown):
+        axes.text(0.5, 0.4, "no bars", transform=axes.transAxes, fontsize=SMALL, color=INK)

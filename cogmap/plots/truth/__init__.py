@@ -1,0 +1,1 @@
+"""Figures of what a map tells against the truth."""

@@ -1,0 +1,90 @@
+"""The metric map, laid over the room."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from cogmap.cells.checks import check_array
+from cogmap.cells.rates.bins import bin_edges, means_by_bin
+from cogmap.plots.style import BAD, GOOD, SOFT, colour_bar, new_figure, tidy, tidy_legend, tidy_room
+
+BIN = 0.2
+"""Mesh of the lattice, m."""
+
+
+def plot_metric_map(mapped: Float[np.ndarray, "views 2"], true: Float[np.ndarray, "views 2"]) -> Figure:
+    """Draw how the learnt map bends a square lattice of the room, and how far off it puts each view.
+
+    Left the lattice of bins of 20 cm that were visited (grey), and the same lattice in the map: each node is
+    moved by the mean error of the views in its bin, and has the colour of that distance. Right how many views
+    are how far off; the last bin holds all that is beyond.
+
+    Parameters
+    ----------
+    mapped
+        Positions told by the map, laid in the room by one similarity, m.
+    true
+        In m.
+
+    Raises
+    ------
+    CogmapError
+        For values that are not finite or shapes that do not fit.
+    """
+    check_array("true", true, (None, 2))
+    check_array("mapped", mapped, (len(true), 2))
+    figure = new_figure(12.0, 4.6)
+    left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
+    away = mapped.astype(float) - true
+    _draw_lattice(left, away, true)
+    spread = np.square(true - true.mean(axis=0)).sum()
+    explained = 1 - np.square(away).sum() / spread if spread else np.nan
+    title = f"{len(true):,} views, R² {explained:.4f}"
+    tidy(right, x="distance from the true position (cm)", y="views", title=title)
+    _draw_distances(right, 100 * np.linalg.norm(away, axis=1))
+    return figure
+
+
+def _draw_lattice(axes: Axes, away: Float[np.ndarray, "views 2"], true: Float[np.ndarray, "views 2"]) -> None:
+    edges = bin_edges(true, BIN)
+    ny, nx = edges.shape
+    mean = means_by_bin(edges.bin_of(true), ny * nx, away).reshape(ny, nx, 2)
+    square = np.stack(np.meshgrid(*edges.centres), axis=2)
+    square[np.isnan(mean[:, :, 0])] = np.nan
+    moved = 100 * np.linalg.norm(mean, axis=2)
+    tidy_room(axes, title="a square lattice of the room (grey), and where the map puts it")
+    axes.add_collection(LineCollection(list(_links(square)), colors=SOFT, linewidths=0.5))
+    ends = _links(square + mean)
+    length = _links(np.repeat(moved[:, :, None], 2, axis=2))[:, :, 0].mean(axis=1)
+    longest = max(float(np.nanpercentile(moved, 99)), 1e-3)
+    lines = LineCollection(
+        list(ends), array=length, cmap="viridis_r", norm=Normalize(0, longest), linewidths=1.6
+    )
+    axes.add_collection(lines)
+    axes.autoscale_view()
+    colour_bar(axes, lines, "mean error (cm)", extend="max")
+
+
+def _links(nodes: Float[np.ndarray, "ny nx 2"]) -> Float[np.ndarray, "links 2 2"]:
+    """Give the ends of the links between neighbouring nodes, where both are finite."""
+    across = np.stack([nodes[:, :-1], nodes[:, 1:]], axis=2).reshape(-1, 2, 2)
+    along = np.stack([nodes[:-1], nodes[1:]], axis=2).reshape(-1, 2, 2)
+    links = np.concatenate([across, along])
+    finite: np.ndarray = links[np.isfinite(links).all(axis=(1, 2))]
+    return finite
+
+
+def _draw_distances(axes: Axes, away: Float[np.ndarray, "views"]) -> None:
+    median, most = np.percentile(away, [50, 95])
+    limit = max(2 * float(most), 1e-3)
+    beyond = int(np.count_nonzero(away > limit))
+    axes.hist(np.minimum(away, limit), bins=np.linspace(0, limit, 46).tolist(), color=SOFT)
+    axes.axvline(median, color=GOOD, linewidth=1.4, label=f"median {median:.1f} cm")
+    axes.axvline(most, color=BAD, linewidth=1.4, linestyle="--", label=f"95 % below {most:.1f} cm")
+    axes.set_xlim(0, limit)
+    tidy_legend(axes, title=f"{beyond} beyond {limit:.0f} cm, in the last bin" if beyond else "")

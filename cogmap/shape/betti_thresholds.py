@@ -1,0 +1,174 @@
+"""How much a bar stands out by chance: thresholds calibrated on clouds without holes.
+
+`python -m cogmap.shape.betti_thresholds` makes the table of thresholds anew.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+from scipy.interpolate import RegularGridInterpolator
+from tqdm import tqdm
+
+from cogmap.shape.rips import euclidean, farthest_points, geodesic, ratios, rips_bars
+
+Metric = Literal["geodesic", "euclidean"]
+
+TABLE = "betti_thresholds.json"
+CUBES = (1, 2, 3, 4)
+"""Dimensions of the cubes; the null is whichever of them deceives most."""
+LEVEL = 0.99
+"""Quantile of the largest π that a bar must exceed; at 0.95 one disc in twenty has a loop."""
+LANDMARKS = {0: (25, 50, 100, 200, 400), 1: (25, 50, 100, 200, 400), 2: (25, 50, 100, 200)}
+CROWDS = (1, 2, 4, 8, 16, 32)
+"""Points per landmark; beyond the last the thresholds hardly fall."""
+CROWD_ON_DEMAND = 8
+"""Most points per landmark in a simulation on demand: a little strict, but minutes instead of an hour."""
+NEIGHBOURS = 15
+CLOUDS = 100
+
+
+def threshold(
+    metric: Metric, dimension: int, *, points: int, landmarks: int, neighbours: int = NEIGHBOURS
+) -> float:
+    """Largest π = death / birth that chance alone explains, for this many landmarks of this many points.
+
+    The largest over uniform d-cubes, d = 1..4, of the 99 % quantile of the largest π in a cube seen in
+    the same way: as many points, the same neighbour graph, landmarks by farthest points in the same metric.
+    Looked up in a table by log-linear interpolation. What is outside it is simulated, the same every time,
+    and kept for the process: quick for fewer than 25 landmarks, minutes for more than 400 (H2: 200) or for
+    fewer than 15 neighbours. More than 15 neighbours are judged as 15 and more than 32 points per landmark
+    as 32 (8 when simulated), which errs on the strict side.
+
+    Parameters
+    ----------
+    metric
+        "geodesic" through the neighbour graph or "euclidean".
+    dimension
+        Of homology: 0, 1 or 2.
+    points, landmarks
+        Sizes of the cloud and of the sample that the bars are computed on.
+    neighbours
+        Of the graph; without effect on the Euclidean metric.
+
+    Returns
+    -------
+    The threshold; infinite for pieces (dimension 0) in the geodesic metric, where distances say it all.
+
+    References
+    ----------
+    Bobrowski & Skraba (2023), A universal null-distribution for topological data analysis: the statistic.
+    """
+    if metric == "geodesic" and dimension == 0:
+        return float("inf")
+    crowd = min(max(points / landmarks, 1.0), float(CROWDS[-1]))
+    grid = LANDMARKS[dimension]
+    if not grid[0] <= landmarks <= grid[-1] or (metric == "geodesic" and neighbours < NEIGHBOURS):
+        crowd = min(crowd, CROWD_ON_DEMAND)
+        return _simulated(metric, dimension, round(crowd * landmarks), landmarks, min(neighbours, NEIGHBOURS))
+    table = RegularGridInterpolator((np.log(grid), np.log(CROWDS)), _table()[metric][dimension])
+    return float(table((np.log(landmarks), np.log(crowd))))
+
+
+def largest_ratios(
+    metric: Metric,
+    cube: int,
+    points: int,
+    sizes: Sequence[tuple[int, int]],
+    *,
+    rng: np.random.Generator,
+    neighbours: int = NEIGHBOURS,
+) -> Float[np.ndarray, "sizes"]:
+    """Draw points uniformly from a cube of `cube` dimensions and find its most deceptive bars.
+
+    Returns
+    -------
+    The largest finite π for each (dimension of homology, landmarks) in `sizes`; 1 where there is no bar.
+    """
+    X = rng.uniform(size=(points, cube))
+    seen = geodesic(X, neighbours) if metric == "geodesic" else euclidean(X)
+    spread = farthest_points(seen, max(count for _, count in sizes), start=0).distances
+    found = []
+    for dimension, count in sizes:
+        (bars,) = rips_bars(spread[:count, :count], [dimension])
+        found.append(ratios(bars)[np.isfinite(bars[:, 1])].max(initial=1.0))
+    return np.array(found)
+
+
+def simulate_table(clouds: int = CLOUDS) -> dict[str, dict[str, list[list[float]]]]:
+    """Simulate every threshold of the table: metric, dimension, then rows of landmarks by columns of crowds.
+
+    About an hour for 100 clouds on one core.
+    """
+    tables: dict[str, dict[str, list[list[float]]]] = {}
+    dimensions: dict[Metric, tuple[int, ...]] = {"geodesic": (1, 2), "euclidean": (0, 1, 2)}
+    totals = sorted({count * crowd for count in LANDMARKS[1] for crowd in CROWDS})
+    with tqdm(total=len(dimensions) * len(totals), desc="null", unit="size") as progress:
+        for metric, wanted in dimensions.items():
+            table = {d: np.empty((len(LANDMARKS[d]), len(CROWDS))) for d in wanted}
+            for points in totals:
+                cells = [
+                    (d, row, column)
+                    for d in wanted
+                    for row, count in enumerate(LANDMARKS[d])
+                    for column, crowd in enumerate(CROWDS)
+                    if count * crowd == points
+                ]
+                sizes = [(d, LANDMARKS[d][row]) for d, row, _ in cells]
+                worst = _worst_quantiles(metric, points, sizes, clouds, NEIGHBOURS)
+                for (d, row, column), value in zip(cells, worst, strict=True):
+                    table[d][row, column] = value
+                progress.update()
+            tables[metric] = {str(d): np.round(values, 4).tolist() for d, values in table.items()}
+    return tables
+
+
+def _worst_quantiles(
+    metric: Metric, points: int, sizes: Sequence[tuple[int, int]], clouds: int, neighbours: int
+) -> Float[np.ndarray, "sizes"]:
+    worst = np.ones(len(sizes))
+    for cube in CUBES:
+        rngs = (np.random.default_rng([cube, points, cloud]) for cloud in range(clouds))
+        drawn = np.stack(
+            [largest_ratios(metric, cube, points, sizes, rng=rng, neighbours=neighbours) for rng in rngs]
+        )
+        worst = np.maximum(worst, np.quantile(drawn, LEVEL, axis=0))
+    return worst
+
+
+@cache
+def _simulated(metric: Metric, dimension: int, points: int, landmarks: int, neighbours: int) -> float:
+    return float(_worst_quantiles(metric, points, [(dimension, landmarks)], CLOUDS, neighbours)[0])
+
+
+@cache
+def _table() -> dict[str, dict[int, Float[np.ndarray, "landmarks crowds"]]]:
+    text = resources.files("cogmap.shape").joinpath(TABLE).read_text(encoding="utf-8")
+    return {
+        metric: {int(dimension): np.array(rows) for dimension, rows in tables.items()}
+        for metric, tables in json.loads(text).items()
+    }
+
+
+def main() -> None:
+    """Write the table."""
+    parser = argparse.ArgumentParser(
+        prog="python -m cogmap.shape.betti_thresholds", description=simulate_table.__doc__
+    )
+    parser.add_argument("--out", type=Path, default=Path(__file__).with_name(TABLE))
+    parser.add_argument("--clouds", type=int, default=CLOUDS, help="cubes per dimension and size")
+    arguments = parser.parse_args()
+    text = json.dumps(simulate_table(arguments.clouds), indent=1)
+    arguments.out.write_text(text + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,143 @@
+"""The angle along the loop of a cloud."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+from jaxtyping import Float, Int
+from ripser import ripser
+from scipy.sparse.csgraph import dijkstra
+from scipy.sparse.linalg import cg, lsqr
+
+from cogmap.errors import CogmapError
+from cogmap.graph.neighbour_graph import checked_graph, components
+from cogmap.shape.rips import farthest_points, ratios
+from cogmap.threads import one_thread
+
+PRIME = 47
+"""Cocycles are found modulo this; residues up to half of it are taken for positive numbers."""
+NEAREST = 8
+"""Landmarks from which a point has its first phase."""
+
+
+class Loop(NamedTuple):
+    """The loop of a cloud that stands out most, and where on it each point lies."""
+
+    phase: Float[np.ndarray, "points"]
+    """rad, in (−π, π]; NaN outside the largest connected piece."""
+    birth: float
+    death: float
+    """When the loop closes and when it is filled, in lengths of the graph."""
+
+
+def circular_coordinate(graph: sp.csr_array, *, landmarks: int = 150, seed: int = 0) -> Loop:
+    r"""Find the angle along the most persistent loop of a neighbour graph's largest piece.
+
+    Landmarks far from each other in the graph have an integer cocycle, the class of the longest bar of
+    persistent cohomology, which gives every point a first phase. Of all circle-valued functions in its class
+    the harmonic one changes least over the edges of the graph,
+
+    .. math:: \min_f \sum_{ij} (f_j - f_i - 2 \pi n_{ij})^2,
+
+    where n counts the edges that cross the cut. At last phases are replaced by their ranks, so that points
+    lie evenly on the circle: an animal that looks in all directions equally often has its heading so, up to a
+    turn and a mirror.
+
+    Parameters
+    ----------
+    graph
+        Symmetric lengths, as from `neighbour_graph`.
+    landmarks
+        On which cohomology is computed.
+    seed
+        Chooses the first landmark.
+
+    Raises
+    ------
+    CogmapError
+        For something else than a neighbour graph, and when there is no loop.
+
+    References
+    ----------
+    de Silva, Morozov & Vejdemo-Johansson (2011), Persistent cohomology and circular coordinates.
+    """
+    graph = checked_graph(graph)
+    points = np.flatnonzero(components(graph).labels == 0)
+    piece = sp.csr_array(graph[points][:, points])
+    paths: list[Float[np.ndarray, "points"]] = []
+
+    def measured(point: int) -> Float[np.ndarray, "points"]:
+        paths.append(np.asarray(dijkstra(piece, indices=[point])[0]))
+        return paths[-1]
+
+    spread = farthest_points(measured, landmarks, int(np.random.default_rng(seed).integers(len(points))))
+    birth, death, cocycle = _most_persistent(spread.distances)
+    with one_thread():
+        at_landmarks = _smooth_cocycle(spread.distances, (birth + death) / 2, cocycle)
+        phase = _harmonic(piece, _spread_out(np.stack(paths), at_landmarks))
+    rank = np.argsort(np.argsort(np.mod(phase, 2 * np.pi), kind="stable"), kind="stable")
+    everywhere = np.full(graph.shape[0], np.nan)
+    everywhere[points] = 2 * np.pi * (rank + 0.5) / len(points) - np.pi
+    return Loop(everywhere, birth, death)
+
+
+def _most_persistent(
+    distances: Float[np.ndarray, "landmarks landmarks"],
+) -> tuple[float, float, Int[np.ndarray, "edges 3"]]:
+    """Find the bar of H1 with the largest ratio and its cocycle: (landmark, landmark, residue)."""
+    symmetric = np.maximum(distances, distances.T)
+    found = ripser(symmetric, distance_matrix=True, maxdim=1, coeff=PRIME, do_cocycles=True)
+    bars = found["dgms"][1]
+    if not len(bars):
+        raise CogmapError("the graph has no loop to take an angle along; check with `betti`")
+    longest = int(np.argmax(ratios(bars)))
+    birth, death = bars[longest].tolist()
+    return birth, death, found["cocycles"][1][longest]
+
+
+def _smooth_cocycle(
+    distances: Float[np.ndarray, "landmarks landmarks"], scale: float, cocycle: Int[np.ndarray, "edges 3"]
+) -> Float[np.ndarray, "landmarks"]:
+    """Give landmarks the phases whose steps over the edges shorter than `scale` are least in its class."""
+    whole = np.zeros(distances.shape)
+    start, end, residue = cocycle.T
+    whole[start, end] = np.where(residue > PRIME // 2, residue - PRIME, residue)
+    whole -= whole.T
+    starts, ends = np.nonzero(np.triu(distances <= scale, 1))
+    difference = _differences(starts, ends, len(distances))
+    solution: np.ndarray = lsqr(difference, -whole[starts, ends], atol=1e-10, btol=1e-10)[0]
+    return 2 * np.pi * solution
+
+
+def _spread_out(
+    paths: Float[np.ndarray, "landmarks points"], phases: Float[np.ndarray, "landmarks"]
+) -> Float[np.ndarray, "points"]:
+    """Give each point the mean direction of its nearest landmarks, weighted by closeness."""
+    count = min(NEAREST, len(paths))
+    near = np.argpartition(paths, count - 1, axis=0)[:count]
+    length = np.take_along_axis(paths, near, 0)
+    weight = 1 / (length + 1e-3 * length.max())
+    return np.asarray(np.angle((weight * np.exp(1j * phases[near])).sum(axis=0)))
+
+
+def _harmonic(graph: sp.csr_array, phase: Float[np.ndarray, "points"]) -> Float[np.ndarray, "points"]:
+    """Smooth phases over the graph without changing how often they wind around a loop."""
+    starts, ends = sp.triu(graph, 1).nonzero()
+    step = phase[ends] - phase[starts]
+    turns = np.round(step / (2 * np.pi))
+    difference = _differences(starts, ends, len(phase))
+    smooth: np.ndarray = cg(
+        difference.T @ difference, difference.T @ (2 * np.pi * turns), x0=phase, rtol=1e-6
+    )[0]
+    return smooth
+
+
+def _differences(
+    starts: Int[np.ndarray, "edges"], ends: Int[np.ndarray, "edges"], points: int
+) -> sp.csr_array:
+    """Make the matrix that takes a function of points to its change along each edge."""
+    edges = np.arange(len(starts))
+    signs = np.repeat([-1.0, 1.0], len(starts))
+    return sp.csr_array((signs, (np.tile(edges, 2), np.concatenate([starts, ends]))), (len(starts), points))

@@ -1,0 +1,261 @@
+"""Betti numbers of a cloud: how many pieces, loops and voids it has, and by how much."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import Literal, NamedTuple, get_args
+
+import numpy as np
+import scipy.sparse as sp
+from jaxtyping import Float, Num
+from scipy.sparse.csgraph import connected_components
+
+from cogmap.errors import CogmapError
+from cogmap.graph.neighbour_graph import checked_graph
+from cogmap.graph.points import checked_cloud
+from cogmap.inputs import check_choice
+from cogmap.shape import betti_thresholds
+from cogmap.shape.rips import (
+    Bars,
+    DistancesFrom,
+    Landmarks,
+    along,
+    euclidean,
+    farthest_points,
+    geodesic,
+    ratios,
+    rips_bars,
+)
+
+Metric = Literal["geodesic", "euclidean", "precomputed"]
+
+FEWEST = 10
+"""Fewer points than this have no shape to speak of."""
+OUTLIERS = 0.01
+"""What holds a smaller share of the points is not a piece of a Euclidean cloud but a handful of outliers."""
+
+
+@dataclass(frozen=True, eq=False)
+class Betti:
+    """Betti numbers with what they rest on; each tuple has one entry per dimension of homology.
+
+    A bar counts when its π (`ratios`: death / birth) exceeds the threshold.
+    """
+
+    numbers: tuple[int, ...]
+    """Pieces, loops, voids: the majority over the draws."""
+    bars: tuple[Bars, ...]
+    """(birth, death) in the unit of the metric, those that stand out most first; from the first draw that
+    agrees with the majority."""
+    thresholds: tuple[float, ...]
+    """What π must exceed; infinite for the pieces of a neighbour graph, where only infinite bars count."""
+    votes: tuple[int, ...]
+    """How many draws agree with the majority."""
+    draws: int
+    landmarks: tuple[int, ...]
+    """How many landmarks the bars were computed on."""
+    points: int
+    """How many distinct points the landmarks were taken from."""
+    metric: Metric
+
+    @property
+    def ratios(self) -> tuple[Float[np.ndarray, "_"], ...]:
+        """π of every bar, in falling order."""
+        return tuple(ratios(bars) for bars in self.bars)
+
+    @property
+    def margins(self) -> tuple[tuple[float | None, float | None], ...]:
+        """π over threshold of the last bar that counts and of the first that does not.
+
+        None without such a bar and where the threshold is infinite.
+        """
+        return tuple(
+            (_over(found[:count], threshold, -1), _over(found[count:], threshold, 0))
+            for found, count, threshold in zip(self.ratios, self.numbers, self.thresholds, strict=True)
+        )
+
+    def __str__(self) -> str:
+        lines = [f"Betti numbers {list(self.numbers)} ({self.metric}, {self.points} points)"]
+        for dimension, (number, found) in enumerate(zip(self.numbers, self.ratios, strict=True)):
+            largest = ", ".join(f"{value:.2f}" for value in found[: number + 4]) or "none"
+            lines.append(
+                f"H{dimension}: {number} bars with π = death/birth over {self.thresholds[dimension]:.2f} "
+                f"({self.votes[dimension]} of {self.draws} draws, {self.landmarks[dimension]} landmarks); "
+                f"largest π: {largest}"
+            )
+        return "\n".join(lines)
+
+
+class _Found(NamedTuple):
+    """What one draw says about one dimension."""
+
+    bars: Bars
+    threshold: float
+    landmarks: int
+
+    @property
+    def number(self) -> int:
+        found = ratios(self.bars)
+        return int(np.count_nonzero((found > self.threshold) | np.isinf(found)))
+
+
+def betti(
+    X: Num[np.ndarray, "points *features"] | sp.csr_array,
+    metric: Metric = "geodesic",
+    *,
+    max_dimension: int = 2,
+    seed: int = 0,
+    neighbours: int = 15,
+    landmarks: tuple[int, int] = (400, 150),
+    draws: int = 3,
+) -> Betti:
+    """Count the pieces, loops and voids of a cloud of points.
+
+    Landmarks are spread over the cloud by farthest points in the metric itself; the Rips filtration on them
+    gives bars; a bar counts when π = death / birth exceeds what clouds without holes reach by chance when
+    seen in the same way (`betti_thresholds.threshold`). This is repeated from `draws` random first landmarks,
+    and each Betti number is the majority's, the smallest of a tie.
+
+    In the geodesic metric the pieces are those of the neighbour graph. In the others a piece is what a gap
+    wider than the threshold sets apart, if it holds at least 1 % of the points; else it is left out.
+
+    Parameters
+    ----------
+    X
+        The points; or with "precomputed" their distances (points, points), infinite between pieces, or as a
+        sparse array their neighbour graph. Repeated points count once, and in the first two metrics their
+        order changes nothing.
+    metric
+        "geodesic": shortest paths in the neighbour graph; "euclidean"; "precomputed": distances are judged
+        as Euclidean ones, a graph by its shortest paths as "geodesic".
+    max_dimension
+        Highest dimension of homology, 0 to 2.
+    seed
+        Chooses the first landmark of every draw.
+    neighbours
+        Of every point in the neighbour graph; 15, because fewer make false loops.
+    landmarks
+        How many for pieces and loops, and how many of these for voids.
+    draws
+        How often to repeat.
+
+    Raises
+    ------
+    CogmapError
+        For NaN, wrong shapes, asymmetric or negative distances, an unknown metric, too few points.
+    """
+    _check_options(metric, max_dimension, landmarks, draws)
+    distances_from, points = _metric_space(X, metric, neighbours)
+    judged: betti_thresholds.Metric = "geodesic" if metric == "geodesic" or sp.issparse(X) else "euclidean"
+    wanted = [landmarks[dimension == 2] for dimension in range(max_dimension + 1)]
+    starts = np.random.default_rng(seed).integers(points, size=draws)
+    drawn = []
+    for start in starts:
+        spread = farthest_points(distances_from, max(wanted), int(start))
+        drawn.append(
+            [
+                _find(spread, dimension, count, points=points, metric=judged, neighbours=neighbours)
+                for dimension, count in enumerate(wanted)
+            ]
+        )
+    chosen, votes = zip(*(_majority(found) for found in zip(*drawn, strict=True)), strict=True)
+    return Betti(
+        numbers=tuple(found.number for found in chosen),
+        bars=tuple(found.bars for found in chosen),
+        thresholds=tuple(found.threshold for found in chosen),
+        votes=votes,
+        draws=draws,
+        landmarks=tuple(found.landmarks for found in chosen),
+        points=points,
+        metric=metric,
+    )
+
+
+def _find(
+    spread: Landmarks,
+    dimension: int,
+    count: int,
+    *,
+    points: int,
+    metric: betti_thresholds.Metric,
+    neighbours: int,
+) -> _Found:
+    distances = spread.distances[:count, :count]
+    limit = betti_thresholds.threshold(
+        metric, dimension, points=points, landmarks=len(distances), neighbours=neighbours
+    )
+    if metric == "euclidean" and dimension == 0:
+        distances = _without_outliers(spread, limit)
+    (bars,) = rips_bars(distances, [dimension])
+    return _Found(bars, limit, len(distances))
+
+
+def _without_outliers(spread: Landmarks, limit: float) -> Float[np.ndarray, "kept kept"]:
+    distances, share = spread.distances, spread.held / spread.held.sum()
+    while True:
+        (bars,) = rips_bars(distances, [0])
+        closed = bars[ratios(bars) <= limit, 1].max(initial=0.0)
+        _, piece = connected_components(distances <= closed, directed=False)
+        kept = np.bincount(piece, weights=share)[piece] >= OUTLIERS
+        if kept.all():
+            return distances
+        # Without its outliers the typical gap is smaller, which can reveal more of them.
+        distances, share = distances[np.ix_(kept, kept)], share[kept]
+
+
+def _majority(found: tuple[_Found, ...]) -> tuple[_Found, int]:
+    tally = Counter(one.number for one in found)
+    number, votes = min(tally.items(), key=lambda entry: (-entry[1], entry[0]))
+    return next(one for one in found if one.number == number), votes
+
+
+def _over(found: Float[np.ndarray, "bars"], threshold: float, which: int) -> float | None:
+    return float(found[which] / threshold) if len(found) and np.isfinite(threshold) else None
+
+
+def _metric_space(
+    X: Num[np.ndarray, "points *features"] | sp.csr_array, metric: Metric, neighbours: int
+) -> tuple[DistancesFrom, int]:
+    if sp.issparse(X):
+        if metric != "precomputed":
+            raise CogmapError(
+                f"X is sparse with the metric {metric!r}; "
+                "give its `neighbour_graph` and the metric 'precomputed'"
+            )
+        graph = checked_graph(X)
+        _check_enough(graph.shape[0])
+        return along(graph, neighbours), graph.shape[0]
+    if metric == "precomputed":
+        distances = _checked_distances(X)
+        return lambda point: distances[point], len(distances)
+    X = np.unique(np.asarray(checked_cloud(X)), axis=0)
+    _check_enough(len(X))
+    return geodesic(X, neighbours) if metric == "geodesic" else euclidean(X), len(X)
+
+
+def _checked_distances(X: Num[np.ndarray, "points *features"]) -> Float[np.ndarray, "points points"]:
+    if X.ndim != 2 or X.shape[0] != X.shape[1]:
+        raise CogmapError(f"precomputed distances have shape {X.shape}; expected a square, (points, points)")
+    _check_enough(len(X))
+    X = X.astype(np.float64)
+    if not (X >= 0).all():
+        raise CogmapError("precomputed distances hold NaN or negative values; distances are at least 0")
+    if np.diagonal(X).any() or not np.allclose(X, X.T, rtol=1e-6, atol=0):
+        raise CogmapError("precomputed distances are not symmetric with a zero diagonal; average X and X.T")
+    return X
+
+
+def _check_enough(points: int) -> None:
+    if points < FEWEST:
+        raise CogmapError(f"{points} distinct points are too few for a shape; give at least {FEWEST}")
+
+
+def _check_options(metric: str, max_dimension: int, landmarks: tuple[int, int], draws: int) -> None:
+    check_choice("metric", metric, get_args(Metric))
+    if not 0 <= max_dimension <= 2:
+        raise CogmapError(f"max_dimension is {max_dimension}; expected 0, 1 or 2")
+    if min(landmarks) < FEWEST or draws < 1:
+        raise CogmapError(
+            f"landmarks {landmarks} and {draws} draws; expected at least {FEWEST} landmarks and one draw"
+        )

@@ -1,0 +1,69 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from arena import Arena, Brownian, Camera
+from cogmap.evaluation.populations import Ground, as_one_table, competing_cells, grow_map
+from cogmap.experiments.conditions import Setting
+
+
+@pytest.fixture(scope="module")
+def ground() -> Ground:
+    room = Arena.load("open_field")
+    rng = np.random.default_rng(0)
+    known, poses = (
+        np.column_stack([room.sample_free(4000, 0.18, rng), rng.uniform(-np.pi, np.pi, 4000)])
+        for _ in range(2)
+    )
+    return Ground.of(room, known, poses)
+
+
+def place_rates(poses: np.ndarray) -> np.ndarray:
+    centres = np.random.default_rng(1).uniform([-1.5, -1.0], [1.5, 1.0], (40, 2))
+    return 10 * np.exp(-((poses[:, None, :2] - centres) ** 2).sum(axis=2) / 0.18)
+
+
+def heading_rates(poses: np.ndarray) -> np.ndarray:
+    preferred = np.linspace(-np.pi, np.pi, 20, endpoint=False)
+    return 10 * np.exp(5 * (np.cos(poses[:, 2:] - preferred) - 1))
+
+
+def test_ideal_cells_pass_as_what_they_are(ground: Ground) -> None:
+    place, heading = (ground.measure(tuned(ground.poses)) for tuned in (place_rates, heading_rates))
+    assert place.place_figures["place_cells_passing"] == 1
+    assert place.heading_figures["heading_cells_passing"] == 0
+    assert place.place_figures["in_field_direction_vector"] < 0.15
+    assert place.place_coverage > 0.75
+    assert heading.heading_figures["heading_cells_passing"] == 1
+    assert heading.place_figures["place_cells_passing"] == heading.place_coverage == 0
+    table = as_one_table({"place": place, "heading": heading})
+    assert table.groupby("population").size().to_dict() == {"place": 40, "heading": 20}
+
+
+def test_cells_tied_to_both_pass_as_neither(ground: Ground) -> None:
+    both = ground.measure(place_rates(ground.poses)[:, :20] * heading_rates(ground.poses))
+    assert both.place_figures["place_cells_passing"] == both.heading_figures["heading_cells_passing"] == 0
+    assert both.place_figures["in_field_direction_vector"] > 0.8
+
+
+def test_cells_without_a_compass_are_silent(ground: Ground) -> None:
+    blind = ground.measure(np.full((4000, 5), np.nan))
+    assert blind.heading_figures == {"heading_cells_passing": 0.0}
+    assert blind.place_figures == {"place_cells_passing": 0.0, "place_coverage": 0.0, "field_area_m2": 0.0}
+
+
+def test_cells_that_compete_for_places_are_place_cells(ground: Ground) -> None:
+    (rates,) = competing_cells(ground.known[:, :2], ground.poses[:, :2], seed=0, cells=60)
+    assert ground.measure(rates).place_figures["place_cells_passing"] > 0.9
+    assert ground.position(ground.known[:, :2], ground.poses[:, :2])["position_median_m"] < 0.05
+
+
+def test_a_map_is_grown_as_the_setting_has_it() -> None:
+    setting = Setting(Arena.load("furnished"), 120, seed=3)
+    walk = setting.explore(Brownian(), Camera.panoramic(90, 15))
+    usual = grow_map(setting, walk)
+    assert (usual.charts, usual.seed, usual.place_cells) == (40, 3, 150)
+    other = grow_map(replace(setting, map={"charts": 30, "place_cells": 20}), walk)
+    assert (other.charts, other.seed) == (30, 3)
+    assert other.perceive(odours=walk.odours).place.shape == (120, 20)

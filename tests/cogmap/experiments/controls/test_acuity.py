@@ -1,0 +1,38 @@
+import numpy as np
+import pytest
+
+from arena import Arena
+from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.controls.acuity import look
+from cogmap.experiments.registry import experiment
+
+
+def test_a_coarse_eye_has_large_pixels_on_the_same_walk() -> None:
+    setting = Setting(Arena.load("furnished"), 60, seed=2)
+    fine, coarse = look(setting, 360), look(setting, 12)
+    np.testing.assert_array_equal(poses_of(fine), poses_of(coarse))
+    assert fine.views.shape == (60, 60, 360, 3)
+    assert coarse.views.shape == (60, 16, 96, 3)
+    blocks = np.asarray(coarse.views).reshape(60, 2, 8, 12, 8, 3)
+    assert (np.ptp(blocks, axis=(2, 4)) == 0).all()
+    means = np.asarray(fine.views).reshape(60, 2, 30, 12, 30, 3).mean(axis=(2, 4))
+    assert np.abs(blocks[:, :, 0, :, 0] - means).mean() < 3
+    assert len(look(setting, 24, fresh=True)) == 60
+
+
+def test_every_eye_and_number_of_charts_is_a_case(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cogmap.experiments.controls.acuity.COLUMNS", (12, 90))
+    monkeypatch.setattr("cogmap.experiments.controls.acuity.USUAL_COLUMNS", 90)
+    monkeypatch.setattr("cogmap.experiments.controls.acuity.CHARTS", (0.125, 1.0))
+    result = experiment("acuity", views=1600, map={"place_cells": 60})
+    cases = result.tables["cases"].set_index(["columns", "charts"])
+    assert sorted(cases.index) == [(12, 533), (90, 67), (90, 533)]
+    blurred, coarse, usual = (cases.loc[case] for case in [(12, 533), (90, 67), (90, 533)])
+    assert usual["place_cells_passing"] * 60 % 1 == pytest.approx(0, abs=1e-9)
+    assert blurred["position_median_m"] > 1.5 * usual["position_median_m"]
+    assert not coarse["trusted"]
+    assert "charts" in coarse["reason"]
+    assert coarse["place_cells_passing"] == coarse["heading_cells_passing"] == 0
+    assert usual["heading_median_deg"] < 10
+    assert result.metrics["90_columns_533_charts"]["position_median_m"] == usual["position_median_m"]
+    assert result.figures.keys() == {"acuity"}

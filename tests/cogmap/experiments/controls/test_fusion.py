@@ -1,0 +1,64 @@
+from typing import Any
+
+import pytest
+
+from cogmap.experiments.registry import experiment
+from cogmap.experiments.result import Result
+
+
+@pytest.fixture(scope="module")
+def result() -> Result:
+    return experiment("fusion", views=4000)
+
+
+@pytest.fixture(scope="module")
+def metrics(result: Result) -> dict[str, Any]:
+    return result.metrics
+
+
+def test_sight_alone_ties_cells_to_place_and_direction(metrics: dict[str, Any]) -> None:
+    alone = metrics["vision_only"]
+    assert alone["in_field_direction_vector"] > 0.9
+    assert alone["place_cells_passing"] == alone["heading_cells_passing"] == 0
+
+
+def test_smell_alone_tells_place_roughly_and_no_direction(metrics: dict[str, Any]) -> None:
+    alone = metrics["olfaction_only"]
+    assert alone["place_cells_passing"] > 0.7
+    assert alone["heading_cells_passing"] == 0
+    assert 0.12 < alone["position_median_m"] < 0.25
+    assert alone["mean_vector_length"] < 0.4
+
+
+def test_both_give_both(metrics: dict[str, Any]) -> None:
+    fused = metrics["fused"]
+    assert fused["trusted"]
+    assert fused["place_cells_passing"] > 0.8
+    assert fused["heading_cells_passing"] > 0.8
+    assert fused["in_field_direction_vector"] < 0.25
+    assert 2 * fused["position_median_m"] < fused["nose_position_median_m"]
+
+
+def test_every_figure_that_applies_is_there(metrics: dict[str, Any]) -> None:
+    cells = {"place_cells_passing", "place_coverage", "heading_cells_passing", "in_field_direction_vector"}
+    position = {"position_median_m", "position_p95_m"}
+    heading = {"heading_median_deg", "heading_p95_deg", "heading_resultant"}
+    metric = {"metric_map_r2", "metric_map_median_m"}
+    nose = {f"nose_{key}" for key in position}
+    assert metrics["vision_only"].keys() >= cells
+    assert metrics["olfaction_only"].keys() >= cells | position
+    assert metrics["fused"].keys() >= cells | position | heading | metric | nose | {"trusted", "seconds"}
+    assert metrics["fused"]["metric_map_r2"] > 0.9
+
+
+def test_metrics_are_those_of_the_table(result: Result) -> None:
+    cells = result.tables["cells"].groupby("population")
+    assert cells.size().to_dict() == {
+        "vision only": 150,
+        "olfaction only": 150,
+        "fused, place": 150,
+        "fused, heading": 60,
+    }
+    passing = cells["place_passing"].mean()
+    assert passing["fused, place"] == result.metrics["fused"]["place_cells_passing"]
+    assert passing["olfaction only"] == result.metrics["olfaction_only"]["place_cells_passing"]

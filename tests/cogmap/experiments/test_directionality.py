@@ -1,9 +1,0 @@
-from cogmap.experiments.catalogue import experiment
-
-
-def test_even_a_small_one_tells_path_from_field() -> None:
-    result = experiment("directionality", views=1500)
-    metrics = result.metrics
-    assert metrics["open_field"]["fused"]["in_field_direction_vector"] < 0.4
-    assert metrics["corridor"]["fused"]["directional"] > metrics["open_field"]["fused"]["directional"] + 0.4
-    assert result.figures.keys() == {"cells", "examples_open_field", "examples_corridor"}

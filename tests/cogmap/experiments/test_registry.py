@@ -1,0 +1,95 @@
+import json
+from pathlib import Path
+
+import matplotlib.image
+import numpy as np
+import pandas as pd
+import pytest
+
+from arena import Arena, Nose
+from cogmap import CogmapError
+from cogmap.experiments.registry import EXPERIMENTS, experiment
+
+VIEWS = {
+    "rotation": 300,
+    "cyclic": 300,
+    "brownian": 300,
+    "similarity": 200,
+    "localisation": 300,
+    "roadmap": 1500,
+    "distinguishability": 300,
+    "fusion": 300,
+    "sources": 200,
+    "goals": 600,
+}
+KEYS = {
+    "rotation": {"test_correlation", "median_error_deg", "betti", "dimension", "geodesic_rank_correlation"},
+    "cyclic": {"heading_resultant", "translation_r2", "betti", "dimension"},
+    "brownian": {"position_r2", "heading_resultant", "betti", "dimension"},
+    "similarity": {"euclidean", "bag_of_words", "earth_mover"},
+    "localisation": {"position_median_m", "heading_median_deg", "nearest_position_median_m", "placed"},
+    "roadmap": {"success", "length_ratio_median", "paths_touching", "deviation_mean", "query_ms"},
+    "distinguishability": {"confusion_white", "confusion_blue_wall", "betti_white", "betti_blue_wall"},
+    "fusion": {"vision_only", "olfaction_only", "fused"},
+    "sources": {"1_sources_0.1_noise", "4_sources_0.1_noise", "3_sources_0_noise", "3_sources_0.3_noise"},
+    "goals": {"goals", "ring_betti", "place_cells_passing", "heading_cells_passing", "heading_median_deg"},
+}
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> None:
+    out = tmp_path / name
+    result = experiment(name, out, views=VIEWS[name], seed=1)
+    assert result.metrics.keys() >= {"experiment", "arena", "views", "seed"} | KEYS[name]
+    assert result.metrics["arena"] == EXPERIMENTS[name].room
+    assert json.loads((out / "metrics.json").read_text(encoding="utf-8")) == result.metrics
+    assert {file.stem for file in out.glob("*.png")} == result.figures.keys()
+    assert {file.stem for file in out.glob("*.parquet")} == result.tables.keys()
+    for figure in result.figures:
+        assert matplotlib.image.imread(out / f"{figure}.png").std() > 0.01
+    for table, rows in result.tables.items():
+        pd.testing.assert_frame_equal(pd.read_parquet(out / f"{table}.parquet"), rows.reset_index(drop=True))
+
+
+def test_the_white_room_is_confused_and_the_blue_wall_is_not() -> None:
+    metrics = experiment("distinguishability", views=1200).metrics
+    assert 0.4 < metrics["confusion_white"] < 0.6
+    assert metrics["confusion_blue_wall"] < 0.02
+
+
+def test_the_same_seed_gives_the_same_tables() -> None:
+    room = Arena.load("open_field")
+    one, same = (experiment("rotation", views=200, seed=2, room=room) for _ in range(2))
+    assert one.metrics["arena"] == "open_field"
+    assert one.metrics == same.metrics
+    for name, table in one.tables.items():
+        np.testing.assert_array_equal(table.to_numpy(), same.tables[name].to_numpy())
+
+
+def test_what_has_rooms_of_its_own_is_done_nowhere_else() -> None:
+    with pytest.raises(CogmapError, match="rooms of its own"):
+        experiment("distinguishability", room=Arena.load("furnished"))
+
+
+@pytest.mark.parametrize(
+    ("name", "views", "says"),
+    [("levitation", None, "choose one of rotation"), ("rotation", 10, "views is 10")],
+)
+def test_what_cannot_be_done_is_refused_and_nothing_is_written(
+    name: str, views: int | None, says: str, tmp_path: Path
+) -> None:
+    with pytest.raises(CogmapError, match=says):
+        experiment(name, tmp_path / "out", views=views)
+    assert not list(tmp_path.iterdir())
+
+
+def test_another_folder_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "thesis.txt").write_text("years of work", encoding="utf-8")
+    with pytest.raises(CogmapError, match="not the result of an experiment"):
+        experiment("rotation", tmp_path, views=200)
+    assert [file.name for file in tmp_path.iterdir()] == ["thesis.txt"]
+
+
+def test_what_an_experiment_does_not_take_is_refused() -> None:
+    with pytest.raises(CogmapError, match="rotation does not take another nose"):
+        experiment("rotation", views=200, nose=Nose(noise=0.3))

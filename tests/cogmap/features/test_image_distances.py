@@ -1,0 +1,107 @@
+import numpy as np
+import ot
+import pytest
+import scipy.sparse as sp
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sklearn.metrics.pairwise import cosine_distances as their_cosine_distances
+
+from cogmap.errors import CogmapError
+from cogmap.features.image_distances import (
+    cosine_distances,
+    earth_mover_distances,
+    pixel_distances,
+    pose_agreement,
+)
+
+
+def strips(n: int, rng: np.random.Generator, columns: int = 24) -> np.ndarray:
+    return rng.integers(0, 256, size=(n, 5, columns, 3), dtype=np.uint8)
+
+
+@given(st.integers(0, 1000), st.integers(2, 30))
+@settings(deadline=None, max_examples=15)
+def test_earth_movers_work_is_that_of_pot(seed: int, columns: int) -> None:
+    rng = np.random.default_rng(seed)
+    queries, views = strips(3, rng, columns), strips(4, rng, columns)
+    place = np.arange(columns) / columns
+    steps = np.abs(place[:, None] - place)
+    ring = 2 * np.pi * np.minimum(steps, 1 - steps)
+    for q, query in enumerate(queries):
+        for v, view in enumerate(views):
+            ours = earth_mover_distances(queries, views)[q, v]
+            light = [strip.sum(axis=0, dtype=float) for strip in (query, view)]
+            light = [part / part.sum(axis=0) for part in light]
+            work = [ot.emd2(light[0][:, c].copy(), light[1][:, c].copy(), ring) for c in range(3)]
+            assert ours == pytest.approx(np.mean(work), abs=1e-9)
+
+
+def test_earth_mover_measures_a_turn() -> None:
+    strip = np.zeros((1, 4, 360, 3), np.uint8)
+    strip[:, :, 10:14] = 200
+    for shift in (0, 1, 90, 300):
+        turned = np.roll(strip, shift, axis=2)
+        expected = 2 * np.pi * min(shift, 360 - shift) / 360
+        assert earth_mover_distances(strip, turned)[0, 0] == pytest.approx(expected, abs=1e-9)
+
+
+def test_brightness_moves_nothing_and_darkness_is_even() -> None:
+    rng = np.random.default_rng(0)
+    strip = strips(1, rng) // 2
+    assert earth_mover_distances(strip, 2 * strip)[0, 0] == pytest.approx(0, abs=1e-12)
+    dark, even = np.zeros_like(strip), np.full_like(strip, 9)
+    assert earth_mover_distances(dark, even)[0, 0] == pytest.approx(0, abs=1e-12)
+
+
+def test_pixels_differ_by_their_root_mean_square() -> None:
+    rng = np.random.default_rng(1)
+    queries, views = strips(7, rng), strips(300, rng)
+    apart = queries[:, None].astype(float) - views
+    np.testing.assert_allclose(pixel_distances(queries, views), np.sqrt((apart**2).mean(axis=(2, 3, 4))))
+    assert pixel_distances(np.zeros_like(queries), np.full_like(queries, 255)).max() == pytest.approx(255)
+
+
+def test_words_differ_by_their_cosine() -> None:
+    rng = np.random.default_rng(2)
+    X = rng.uniform(size=(20, 9)) * (rng.uniform(size=(20, 9)) < 0.5)
+    X[4] = 0
+    X /= np.maximum(np.linalg.norm(X, axis=1, keepdims=True), 1e-9)
+    rows = sp.csr_array(X, dtype=np.float32)
+    np.testing.assert_allclose(cosine_distances(rows[:6], rows), their_cosine_distances(X[:6], X), atol=1e-6)
+    np.testing.assert_array_equal(cosine_distances(rows[4:5], rows), 1)
+
+
+def test_agreement_of_the_truth_is_perfect() -> None:
+    rng = np.random.default_rng(3)
+    poses = np.column_stack([rng.uniform(-2, 2, size=(200, 2)), rng.uniform(-np.pi, np.pi, 200)])
+    queries = poses[:50] + np.array([0.01, 0, 0.02])
+    offset = queries[:, None] - poses
+    offset[..., 2] = (offset[..., 2] + np.pi) % (2 * np.pi) - np.pi
+    truth = np.sqrt(offset[..., 0] ** 2 + offset[..., 1] ** 2 + (0.5 * offset[..., 2]) ** 2)
+    found = pose_agreement(truth, queries, poses, neighbours=1)
+    assert found.recall == 1
+    assert found.position_median_m == pytest.approx(0.01)
+    assert found.heading_median_deg == pytest.approx(np.rad2deg(0.02))
+    chance = pose_agreement(rng.uniform(size=truth.shape), queries, poses)
+    assert chance.recall == pytest.approx(10 / 200, abs=0.03)
+    assert chance.position_median_m > 1
+    assert 60 < chance.heading_median_deg < 120
+
+
+@pytest.mark.parametrize("measure", [pixel_distances, earth_mover_distances])
+def test_images_of_two_sizes_get_one_sentence(measure) -> None:
+    rng = np.random.default_rng(4)
+    with pytest.raises(CogmapError, match="give images of one size"):
+        measure(strips(2, rng), strips(2, rng, 30))
+    with pytest.raises(CogmapError, match="uint8 images"):
+        measure(strips(2, rng).astype(float), strips(2, rng))
+
+
+def test_bad_truth_gets_one_sentence() -> None:
+    distances, poses = np.ones((3, 8)), np.zeros((8, 3))
+    with pytest.raises(CogmapError, match="8 views are too few for 9"):
+        pose_agreement(distances, poses[:3], poses, neighbours=9)
+    with pytest.raises(CogmapError, match="query_poses is not finite"):
+        pose_agreement(distances, np.full((3, 3), np.nan), poses)
+    with pytest.raises(CogmapError, match="distances is not finite"):
+        pose_agreement(distances * np.inf, poses[:3], poses)

@@ -1,0 +1,86 @@
+import numpy as np
+import pytest
+import torch
+
+from arena import Recording
+from cogmap import CognitiveMap
+from cogmap.map.lesions import afferent_weights, newborn, operated, silenced, weights_of
+from neurons.layers.readout import Excited
+
+
+def test_nothing_changed_is_the_same_map(cmap: CognitiveMap, walk: Recording) -> None:
+    same = operated(cmap, {})
+    for one, other in zip(
+        vars(cmap.perceive(walk.views[:50])).values(),
+        vars(same.perceive(walk.views[:50])).values(),
+        strict=True,
+    ):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_a_newborn_remembers_all_but_its_cells_hear_nothing(cmap: CognitiveMap, walk: Recording) -> None:
+    known, blank = (some.perceive(walk.views[:50]) for some in (cmap, newborn(cmap)))
+    assert not blank.place.any()
+    assert not blank.heading.any()
+    np.testing.assert_array_equal(blank.phase, known.phase)
+    np.testing.assert_array_equal(blank.odour, known.odour)
+
+
+def test_a_newborn_learns_the_same_weights_again(cmap: CognitiveMap, walk: Recording) -> None:
+    growing = newborn(cmap)
+    growing.partial_fit(walk.views[:1000], walk.odours[:1000])
+    growing.partial_fit(walk.views[1000:], walk.odours[1000:])
+    for cells in ("place", "heading"):
+        np.testing.assert_allclose(
+            afferent_weights(growing, cells), afferent_weights(cmap, cells), rtol=1e-3, atol=1e-3
+        )
+
+
+def excited(cmap: CognitiveMap, walk: Recording) -> Excited:
+    layers = cmap._layers
+    with torch.no_grad():
+        return layers.recall.excite(layers.charts, torch.from_numpy(cmap.encode(walk.views)))
+
+
+@pytest.mark.parametrize("cells", ["place", "heading"])
+def test_weights_are_what_cells_fire_by(cmap: CognitiveMap, walk: Recording, cells: str) -> None:
+    weights = afferent_weights(cmap, cells)
+    chart, activity = excited(cmap, walk)
+    fired = np.einsum("nw,nwc->nc", activity.numpy(), weights[chart.numpy()])
+    np.testing.assert_allclose(getattr(cmap.perceive(walk.views), cells), fired, rtol=1e-4, atol=1e-4)
+
+
+def test_silent_charts_are_never_heard(cmap: CognitiveMap, walk: Recording) -> None:
+    views = walk.views[:100]
+    silent = np.random.default_rng(0).permutation(cmap.charts)[: cmap.charts // 2]
+    assert np.isin(silent, excited(cmap, walk).chart.numpy()).all()
+    less = silenced(cmap, silent)
+    assert not np.isin(silent, excited(less, walk).chart.numpy()).any()
+    heard = less.perceive(views)
+    assert np.isfinite(heard.place).all()
+    assert not np.array_equal(heard.place, cmap.perceive(views).place)
+    weights = weights_of(less)
+    for name in ("place.afferents.association", "heading.afferents.association"):
+        weights[name] = weights[name].clone()
+        weights[name][silent] = 1e9
+    np.testing.assert_array_equal(operated(less, weights).perceive(views).place, heard.place)
+
+
+def test_no_chart_silenced_changes_nothing(cmap: CognitiveMap, walk: Recording) -> None:
+    none = silenced(cmap, np.zeros(0, dtype=int))
+    np.testing.assert_array_equal(
+        none.perceive(walk.views[:20]).heading, cmap.perceive(walk.views[:20]).heading
+    )
+
+
+def test_the_map_itself_is_left_as_it_is(cmap: CognitiveMap) -> None:
+    before = weights_of(cmap)
+    silenced(cmap, np.arange(10))
+    newborn(cmap)
+    for name, kept in weights_of(cmap).items():
+        assert kept.equal(before[name]) or kept.isnan().any(), name
+
+
+def test_only_populations_have_afferents(cmap: CognitiveMap) -> None:
+    with pytest.raises(KeyError):
+        afferent_weights(cmap, "grid")

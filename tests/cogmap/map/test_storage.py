@@ -1,0 +1,50 @@
+from pathlib import Path
+
+import pytest
+import torch
+
+from cogmap import CogmapError, CognitiveMap
+from cogmap.map.storage import read_map, write_map
+
+WEIGHTS = {"a": torch.arange(6.0).reshape(2, 3), "b": torch.tensor(7)}
+
+
+def test_round_trip(tmp_path: Path) -> None:
+    write_map(tmp_path / "map", WEIGHTS, {"charts": 3}, {"odorants": 2})
+    weights, settings, learnt = read_map(tmp_path / "map")
+    assert all(torch.equal(weights[name], WEIGHTS[name]) for name in WEIGHTS)
+    assert (settings, learnt) == ({"charts": 3}, {"odorants": 2})
+    assert [entry.name for entry in tmp_path.iterdir()] == ["map"]
+
+
+@pytest.mark.parametrize(
+    "damage", ["missing", "no weights", "junk weights", "junk json", "other version", "list"]
+)
+def test_damage_is_told_in_one_line(tmp_path: Path, damage: str) -> None:
+    path = tmp_path / "map"
+    write_map(path, WEIGHTS, {}, {})
+    if damage == "missing":
+        path = tmp_path / "nothing"
+    elif damage == "no weights":
+        (path / "weights.safetensors").unlink()
+    elif damage == "junk weights":
+        (path / "weights.safetensors").write_bytes(b"junk" * 100)
+    else:
+        text = {"junk json": "{", "other version": '{"version": 99}', "list": "[]"}[damage]
+        (path / "map.json").write_text(text, encoding="utf-8")
+    with pytest.raises(CogmapError) as caught:
+        CognitiveMap.load(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_weights_of_another_size_are_refused(tmp_path: Path) -> None:
+    write_map(tmp_path / "map", WEIGHTS, {}, {"view_shape": [15, 90, 3], "odorants": 3, "epoch": 5})
+    with pytest.raises(CogmapError, match="whole map"):
+        CognitiveMap.load(tmp_path / "map")
+
+
+def test_nothing_is_left_when_writing_fails(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    with pytest.raises(CogmapError, match="cannot write"):
+        write_map(tmp_path / "file" / "map", WEIGHTS, {}, {})
+    assert [entry.name for entry in tmp_path.iterdir()] == ["file"]

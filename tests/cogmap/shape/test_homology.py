@@ -1,0 +1,233 @@
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from scipy.spatial.distance import cdist
+
+from cogmap.errors import CogmapError
+from cogmap.graph.neighbour_graph import neighbour_graph
+from cogmap.shape.homology import Betti, _check_options, betti
+from cogmap.shape.rips import farthest_points, geodesic, rips_bars
+from cogmap.testing import assert_betti
+
+Sampler = Callable[[int, np.random.Generator], np.ndarray]
+
+
+def circle(n: int, rng: np.random.Generator) -> np.ndarray:
+    angle = rng.uniform(0, 2 * np.pi, n)
+    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+def disc(n: int, rng: np.random.Generator, hole: float = 0.0) -> np.ndarray:
+    return circle(n, rng) * np.sqrt(rng.uniform(hole**2, 1, (n, 1)))
+
+
+def ball(n: int, rng: np.random.Generator) -> np.ndarray:
+    X = rng.normal(size=(n, 3))
+    return X * rng.uniform(size=(n, 1)) ** (1 / 3) / np.linalg.norm(X, axis=1, keepdims=True)
+
+
+def cylinder(n: int, rng: np.random.Generator) -> np.ndarray:
+    return np.hstack([circle(n, rng), rng.uniform(0, 2, (n, 1))])
+
+
+def solid_torus(n: int, rng: np.random.Generator) -> np.ndarray:
+    return np.hstack([disc(n, rng), circle(n, rng)])
+
+
+def torus(n: int, rng: np.random.Generator) -> np.ndarray:
+    return np.hstack([circle(n, rng), circle(n, rng)])
+
+
+def sphere(n: int, rng: np.random.Generator) -> np.ndarray:
+    X = rng.normal(size=(n, 3))
+    return X / np.linalg.norm(X, axis=1, keepdims=True)
+
+
+def annulus_times_circle(n: int, rng: np.random.Generator) -> np.ndarray:
+    return np.hstack([disc(n, rng, hole=0.4), 0.7 * circle(n, rng)])
+
+
+def two_discs(n: int, rng: np.random.Generator) -> np.ndarray:
+    X = disc(n, rng)
+    X[: n // 2, 0] += 3
+    return X
+
+
+SPACES: dict[Sampler, tuple[int, int, int]] = {
+    circle: (1, 1, 0),
+    cylinder: (1, 1, 0),
+    solid_torus: (1, 1, 0),
+    torus: (1, 2, 1),
+    disc: (1, 0, 0),
+    ball: (1, 0, 0),
+    sphere: (1, 0, 1),
+    annulus_times_circle: (1, 2, 1),
+    two_discs: (2, 0, 0),
+}
+FEW = (200, 100)
+"""Landmarks that are enough here, and quick."""
+
+
+@pytest.mark.parametrize("space", SPACES, ids=lambda space: space.__name__)
+def test_known_spaces(space: Sampler) -> None:
+    assert_betti(space(1500, np.random.default_rng(0)), SPACES[space], landmarks=FEW)
+
+
+@pytest.mark.parametrize("space", [circle, torus, sphere, disc, ball, two_discs], ids=lambda s: s.__name__)
+def test_known_spaces_by_straight_lines(space: Sampler) -> None:
+    assert_betti(space(1500, np.random.default_rng(1)), SPACES[space], "euclidean", landmarks=FEW)
+
+
+@pytest.mark.parametrize("space", [circle, solid_torus, torus, disc], ids=lambda s: s.__name__)
+def test_known_spaces_in_many_dimensions_with_noise(space: Sampler) -> None:
+    rng = np.random.default_rng(2)
+    X = space(2000, rng)
+    axes = np.linalg.qr(rng.normal(size=(30, X.shape[1])))[0]
+    X = X @ axes.T + rng.normal(scale=0.03, size=(2000, 30))
+    assert_betti(X.astype(np.float32), SPACES[space], landmarks=FEW)
+
+
+@pytest.mark.parametrize("space", [circle, sphere, disc, ball, two_discs], ids=lambda s: s.__name__)
+def test_fewer_points_than_landmarks(space: Sampler) -> None:
+    found = betti(space(120, np.random.default_rng(4)))
+    assert found.numbers == SPACES[space], str(found)
+    assert found.landmarks == (120, 120, 120)
+
+
+def test_precomputed_distances_may_be_infinite_between_pieces() -> None:
+    rng = np.random.default_rng(3)
+    X = np.concatenate([circle(150, rng), disc(150, rng)])
+    distances = cdist(X, X)
+    distances[:150, 150:] = distances[150:, :150] = np.inf
+    assert betti(distances, "precomputed", max_dimension=1).numbers == (2, 1)
+
+
+def test_precomputed_distances_give_what_the_points_give() -> None:
+    X = np.unique(cylinder(600, np.random.default_rng(4)), axis=0)
+    points = betti(X, "euclidean", landmarks=FEW)
+    distances = betti(cdist(X, X), "precomputed", landmarks=FEW)
+    assert points.numbers == distances.numbers
+    for one, other in zip(points.bars, distances.bars, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+@pytest.mark.parametrize("space", [cylinder, two_discs], ids=lambda s: s.__name__)
+def test_neighbour_graph_gives_what_the_points_give(space: Sampler) -> None:
+    X = np.unique(space(800, np.random.default_rng(12)), axis=0)
+    points = betti(X, landmarks=FEW)
+    graph = betti(neighbour_graph(X), "precomputed", landmarks=FEW)
+    assert str(graph) == str(points).replace("geodesic", "precomputed")
+    for one, other in zip(points.bars, graph.bars, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_outliers_are_no_pieces() -> None:
+    rng = np.random.default_rng(5)
+    X = np.concatenate([disc(1000, rng), [[5, 5], [-6, 2], [0, 9], [0.1, 9]]])
+    assert betti(X, "euclidean", landmarks=FEW).numbers == (1, 0, 0)
+    X = np.concatenate([X, disc(100, rng) / 4 - 10])
+    assert betti(X, "euclidean", landmarks=FEW).numbers == (2, 0, 0)
+
+
+def test_same_seed_and_any_order_give_the_same() -> None:
+    rng = np.random.default_rng(6)
+    X = solid_torus(800, rng)
+    one = betti(X, seed=3, draws=2, landmarks=FEW)
+    same = betti(rng.permutation(np.concatenate([X, X[:50]])), seed=3, draws=2, landmarks=FEW)
+    assert one.points == same.points == 800
+    assert str(one) == str(same)
+    for bars, others in zip(one.bars, same.bars, strict=True):
+        np.testing.assert_array_equal(bars, others)
+    assert str(one) != str(betti(X, seed=4, draws=2, landmarks=FEW))
+
+
+def test_bars_are_those_of_the_landmarks() -> None:
+    X = np.unique(cylinder(500, np.random.default_rng(7)), axis=0)
+    found = betti(X, seed=11, draws=1, landmarks=(100, 60))
+    start = int(np.random.default_rng(11).integers(500, size=1)[0])
+    spread = farthest_points(geodesic(X, 15), 100, start)
+    assert found.landmarks == (100, 100, 60)
+    np.testing.assert_array_equal(found.bars[1], rips_bars(spread.distances, [1])[0])
+    np.testing.assert_array_equal(found.bars[2], rips_bars(spread.distances[:60, :60], [2])[0])
+
+
+def test_result_says_how_sure_it_is() -> None:
+    found = betti(cylinder(1500, np.random.default_rng(8)), landmarks=FEW)
+    assert found.draws == 3
+    assert all(2 <= votes <= 3 for votes in found.votes)
+    assert found.thresholds[0] == np.inf
+    (_, (last_in, first_out), (nothing_in, _)) = found.margins
+    assert last_in is not None
+    assert first_out is not None
+    assert nothing_in is None
+    assert last_in == pytest.approx(found.ratios[1][0] / found.thresholds[1])
+    assert first_out == pytest.approx(found.ratios[1][1] / found.thresholds[1])
+    assert last_in > 1
+    assert first_out < 1
+    assert f"{found.ratios[1][0]:.2f}" in str(found)
+
+
+def test_fewer_dimensions_on_request() -> None:
+    found = betti(two_discs(600, np.random.default_rng(9)), max_dimension=0)
+    assert found.numbers == (2,)
+    assert len(found.bars) == len(found.votes) == len(found.landmarks) == 1
+
+
+def test_majority_of_the_draws_decides(monkeypatch: pytest.MonkeyPatch) -> None:
+    from cogmap.shape import homology  # noqa: PLC0415
+
+    loops = iter([3, 1, 1, 0, 2])
+    bars = np.array([[1.0, 9.0]])
+    monkeypatch.setattr(
+        homology,
+        "_find",
+        lambda *_, **__: homology._Found(np.repeat(bars, next(loops), axis=0), 2.0, 400),
+    )
+    found: Betti = betti(disc(100, np.random.default_rng(10)), max_dimension=0, draws=5)
+    assert (found.numbers, found.votes) == ((1,), (2,))
+
+
+GOOD = np.random.default_rng(0).normal(size=(30, 3))
+APART = cdist(GOOD, GOOD)
+
+
+@pytest.mark.parametrize(
+    ("X", "options", "message"),
+    [
+        (np.where(GOOD > 2, np.nan, GOOD), {}, "NaN"),
+        (GOOD * np.inf, {}, "infinite"),
+        (GOOD[:, 0], {}, r"shape \(30,\)"),
+        (GOOD[:, :, None], {}, r"shape \(30, 3, 1\)"),
+        (GOOD[:0], {}, "0 distinct points"),
+        (GOOD[:9], {"metric": "euclidean"}, "9 distinct points are too few"),
+        (GOOD[:12], {}, "12 distinct points cannot have 15"),
+        (np.zeros((100, 2)), {}, "1 distinct points"),
+        (GOOD, {"max_dimension": 3}, "max_dimension is 3"),
+        (GOOD, {"draws": 0}, "0 draws"),
+        (GOOD, {"landmarks": (400, 5)}, r"landmarks \(400, 5\)"),
+        (GOOD, {"neighbours": 0}, "neighbours is 0"),
+        (GOOD, {"metric": "precomputed"}, r"shape \(30, 3\); expected a square"),
+        (APART[:5, :5], {"metric": "precomputed"}, "5 distinct points"),
+        (-APART, {"metric": "precomputed"}, "negative"),
+        (APART * np.nan, {"metric": "precomputed"}, "NaN"),
+        (np.triu(APART), {"metric": "precomputed"}, "not symmetric"),
+        (APART + 1, {"metric": "precomputed"}, "zero diagonal"),
+        (sp.csr_array(APART), {}, "sparse with the metric 'geodesic'"),
+        (sp.csr_array(APART[:5, :5]), {"metric": "precomputed"}, "5 distinct points"),
+        (sp.csr_array(np.triu(APART)), {"metric": "precomputed"}, "graph is not symmetric"),
+    ],
+)
+def test_bad_input_gets_one_sentence(
+    X: np.ndarray | sp.csr_array, options: dict[str, object], message: str
+) -> None:
+    with pytest.raises(CogmapError, match=message) as caught:
+        betti(X, **options)
+    assert "\n" not in str(caught.value)
+
+
+def test_unknown_metric_gets_one_sentence() -> None:
+    # The run-time type check of the tests would catch it earlier in `betti` itself.
+    with pytest.raises(CogmapError, match="'cosine'; choose one of geodesic, euclidean, precomputed"):
+        _check_options("cosine", 2, (400, 150), 3)

@@ -1,0 +1,52 @@
+from pathlib import Path
+
+import pytest
+
+from cogmap import CogmapError
+from cogmap.atomic import check_absent, whole
+
+
+def test_it_appears_only_when_it_is_whole(tmp_path: Path) -> None:
+    path = tmp_path / "new" / "page.html"
+    with whole(path) as fresh:
+        fresh.write_text("half", encoding="utf-8")
+        assert not path.exists()
+        assert fresh.suffix == path.suffix
+    assert path.read_text(encoding="utf-8") == "half"
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_folder_too(tmp_path: Path) -> None:
+    with whole(tmp_path / "map") as fresh:
+        fresh.mkdir()
+        (fresh / "weights").touch()
+    assert [file.name for file in (tmp_path / "map").iterdir()] == ["weights"]
+
+
+def test_a_failure_changes_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "page.html"
+    path.write_text("old", encoding="utf-8")
+
+    def fail() -> None:
+        with whole(path) as fresh:
+            fresh.write_text("new", encoding="utf-8")
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    assert path.read_text(encoding="utf-8") == "old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(CogmapError, match="cannot write"), whole(tmp_path / "file" / "page.html"):
+        pass
+
+
+def test_what_is_there_is_left_alone(tmp_path: Path) -> None:
+    check_absent(tmp_path / "new")
+    (tmp_path / "lost").symlink_to(tmp_path / "gone")
+    for path in (tmp_path, tmp_path / "lost"):
+        with pytest.raises(CogmapError, match="exists already and is left as it is"):
+            check_absent(path)
