@@ -1,1 +1,39 @@
 """Plastic layers that learn by local Hebbian rules; handed views and odours, they know nothing else."""
+
+from neurons.atlas.atlas import Atlas
+from neurons.atlas.disambiguation import branches
+from neurons.atlas.heading_axis import heading_axes
+from neurons.atlas.metric_map import Gauge
+from neurons.atlas.synchronisation import Compass, synchronise
+from neurons.errors import NeuronsError
+from neurons.layers.afferents import Afferents
+from neurons.layers.charts import Charts
+from neurons.layers.heading_cells import HeadDirectionCells
+from neurons.layers.olfaction import Olfaction
+from neurons.layers.place_cells import PlaceCells
+from neurons.layers.readout import Recall
+from neurons.layers.retina import Retina
+from neurons.layers.sanger import Sanger
+from neurons.merging import forked, merge
+from neurons.network import Layers
+
+__all__ = [
+    "Afferents",
+    "Atlas",
+    "Charts",
+    "Compass",
+    "Gauge",
+    "HeadDirectionCells",
+    "Layers",
+    "NeuronsError",
+    "Olfaction",
+    "PlaceCells",
+    "Recall",
+    "Retina",
+    "Sanger",
+    "branches",
+    "forked",
+    "heading_axes",
+    "merge",
+    "synchronise",
+]

@@ -28,7 +28,7 @@ from cogmap.cells.rates.bins import BinEdges, bin_edges, heading_centres
 from cogmap.cells.rates.maps import RateMaps, rate_maps
 from cogmap.cells.rates.shuffling import ShuffleTest, shuffle_test
 from cogmap.cells.rates.spikes import poisson_spikes
-from cogmap.cells.rates.tuning import mean_vectors, tuning_curves, tuning_widths
+from cogmap.cells.rates.tuning import Tuning, mean_vectors, tuning_curves, tuning_widths
 
 __all__ = [
     "BinEdges",
@@ -38,6 +38,7 @@ __all__ = [
     "RateMaps",
     "RayleighTest",
     "ShuffleTest",
+    "Tuning",
     "bin_edges",
     "coherence",
     "curve_stability",

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
-from cogmap.cells.checks import check_array
-from cogmap.features.image_distances import METRES_PER_RADIAN
+from cogmap.evaluation.pose_agreement import METRES_PER_RADIAN
+from cogmap.inputs import check_array
 
 STEPS = 200
 """Equal steps at which a path is sampled."""

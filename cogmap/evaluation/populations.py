@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +14,7 @@ from jaxtyping import Float
 from arena import Arena, Body, Recording
 from cogmap.cells import (
     RateMaps,
+    Tuning,
     bin_edges,
     heading_statistics,
     place_coverage,
@@ -23,10 +25,8 @@ from cogmap.cells import (
     tuning_curves,
 )
 from cogmap.cells.measures.correlations import correlations
-from cogmap.experiments.conditions import Setting
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import BATCH, CognitiveMap
-from cogmap.plots import Tuning
 from cogmap.threads import one_thread
 from neurons.layers.place_cells import PlaceCells
 from neurons.network import EPOCHS
@@ -36,13 +36,13 @@ CELLS = 150
 MOST_CHARTS = 3000
 
 
-def grow_map(setting: Setting, walk: Recording) -> CognitiveMap:
+def grow_map(walk: Recording, parameters: Mapping[str, Any], *, seed: int) -> CognitiveMap:
     """Learn a map with 3,000 charts, or a third as many as views when these are fewer than 9,000.
 
-    Parameters that the setting has of its own go before these.
+    Parameters of `CognitiveMap` that are given go before these.
     """
-    usual = {"charts": min(MOST_CHARTS, len(walk) // 3), "seed": setting.seed}
-    return CognitiveMap(**{**usual, **setting.map}).fit(walk.views, walk.odours)
+    usual = {"charts": min(MOST_CHARTS, len(walk) // 3), "seed": seed}
+    return CognitiveMap(**{**usual, **parameters}).fit(walk.views, walk.odours)
 
 
 def perceive(cmap: CognitiveMap, views: Any) -> Activity:

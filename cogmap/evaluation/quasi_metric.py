@@ -11,7 +11,7 @@ from jaxtyping import Float
 from scipy.sparse.csgraph import dijkstra
 from scipy.stats import spearmanr
 
-from cogmap.features.image_distances import motion_distances
+from cogmap.evaluation.pose_agreement import motion_distances
 
 SOURCES = 300
 """Views from which distances are measured."""

@@ -8,7 +8,6 @@ import numpy as np
 from jaxtyping import Float
 from sklearn.metrics import r2_score
 
-from cogmap.cells.checks import check_array
 from cogmap.cells.decoding.decoders import (
     fit_heading_frame,
     fit_map_frame,
@@ -21,6 +20,7 @@ from cogmap.cells.measures.heading import heading_statistics
 from cogmap.cells.measures.place import place_statistics
 from cogmap.cells.rates.bins import bin_edges
 from cogmap.cells.rates.maps import RateMaps, rate_maps
+from cogmap.inputs import check_array
 
 
 @runtime_checkable

@@ -9,8 +9,8 @@ from jaxtyping import Float
 from scipy.sparse.csgraph import dijkstra
 
 from arena import Arena
-from cogmap.cells.checks import check_array
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_array
 
 
 def shortest_lengths(

@@ -16,6 +16,7 @@ import numpy as np
 from jaxtyping import Float
 
 from arena import Arena, Body, Brownian, Camera, Recording, explore
+from cogmap.atomic import METRICS, result_folder
 from cogmap.cells import (
     fit_heading_frame,
     fit_map_frame,
@@ -32,7 +33,6 @@ from cogmap.errors import CogmapError
 from cogmap.evaluation.homology_of_map import homologies
 from cogmap.evaluation.scoring import score
 from cogmap.experiments.conditions import FRESH, FRESH_SEED, poses_of
-from cogmap.experiments.outputs import METRICS, result_folder
 from cogmap.experiments.provenance import write_about
 from cogmap.inputs import checked_count
 from cogmap.map.activity import Activity

@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 from arena import Arena
+from cogmap.atomic import result_folder
 from cogmap.errors import CogmapError
 from cogmap.experiments.conditions import Setting
 from cogmap.experiments.controls.acuity import acuity
@@ -20,7 +21,6 @@ from cogmap.experiments.controls.fusion import fusion
 from cogmap.experiments.controls.homology import homology
 from cogmap.experiments.controls.odour_ablation import sources
 from cogmap.experiments.controls.slow_feature_comparison import walks
-from cogmap.experiments.outputs import result_folder
 from cogmap.experiments.paper.brownian import brownian
 from cogmap.experiments.paper.cyclic import cyclic
 from cogmap.experiments.paper.distinguishability import distinguishability

@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
-from cogmap.experiments.outputs import METRICS
+from cogmap.atomic import METRICS
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from cogmap.plots.cells.afferents import plot_afferents
 from cogmap.plots.cells.cell_types import plot_cell_types
-from cogmap.plots.cells.examples import Tuning, plot_examples
+from cogmap.plots.cells.examples import plot_examples
 from cogmap.plots.cells.heading_cells import plot_tuning_curves
 from cogmap.plots.cells.learning_curves import plot_courses
 from cogmap.plots.cells.place_cells import plot_rate_maps
@@ -28,7 +28,6 @@ from cogmap.plots.truth.quasi_metric import plot_quasi_metric
 from cogmap.plots.truth.translation import plot_translation
 
 __all__ = [
-    "Tuning",
     "plot_afferents",
     "plot_barcode_grid",
     "plot_barcodes",

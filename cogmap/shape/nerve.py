@@ -9,9 +9,8 @@ import gudhi
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from cogmap.cells.checks import check_samples
 from cogmap.errors import CogmapError
-from cogmap.inputs import checked_count
+from cogmap.inputs import check_samples, checked_count
 
 ACTIVE = math.exp(-2)
 """Share of its peak at which a cell counts as active: within two standard deviations of a Gaussian field."""

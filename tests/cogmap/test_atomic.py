@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from cogmap import CogmapError
-from cogmap.atomic import check_absent, whole
+from cogmap.atomic import METRICS, check_absent, result_folder, whole
 
 
 def test_it_appears_only_when_it_is_whole(tmp_path: Path) -> None:
@@ -50,3 +50,33 @@ def test_what_is_there_is_left_alone(tmp_path: Path) -> None:
     for path in (tmp_path, tmp_path / "lost"):
         with pytest.raises(CogmapError, match="exists already and is left as it is"):
             check_absent(path)
+
+
+def test_a_result_appears_whole_and_replaces_an_earlier_one(tmp_path: Path) -> None:
+    out = tmp_path / "deep" / "result"
+    for text in ("first", "second"):
+        with result_folder(out) as folder:
+            (folder / METRICS).write_text(text, encoding="utf-8")
+            assert not out.exists() or (out / METRICS).read_text(encoding="utf-8") == "first"
+        assert (out / METRICS).read_text(encoding="utf-8") == text
+    assert [entry.name for entry in out.parent.iterdir()] == ["result"]
+
+
+def test_a_failure_changes_no_result(tmp_path: Path) -> None:
+    out = tmp_path / "result"
+    with result_folder(out) as folder:
+        (folder / METRICS).write_text("kept", encoding="utf-8")
+    with pytest.raises(RuntimeError, match="boom"), result_folder(out) as folder:
+        (folder / METRICS).write_text("lost", encoding="utf-8")
+        raise RuntimeError("boom")
+    assert (out / METRICS).read_text(encoding="utf-8") == "kept"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["result"]
+
+
+def test_other_peoples_folders_are_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "diary.txt").write_text("mine", encoding="utf-8")
+    with pytest.raises(CogmapError, match="not the result"), result_folder(tmp_path):
+        pass
+    with pytest.raises(CogmapError, match="not the result"), result_folder(tmp_path / "diary.txt"):
+        pass
+    assert [entry.name for entry in tmp_path.iterdir()] == ["diary.txt"]

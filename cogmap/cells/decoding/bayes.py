@@ -6,9 +6,9 @@ import numpy as np
 from jaxtyping import Float, Real
 from scipy import special
 
-from cogmap.cells.checks import check_array, check_samples
 from cogmap.cells.rates.spikes import SECONDS, check_seconds
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_array, check_samples
 
 FAINTEST = 1e-3
 """Hz; no bin has a lower rate, so that one spike where a cell was never heard makes a bin unlikely, not

@@ -8,8 +8,8 @@ import numpy as np
 from jaxtyping import Complex, Float
 from sklearn.neighbors import KNeighborsRegressor
 
-from cogmap.cells.checks import check_array
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_array
 
 NEIGHBOURS = 4
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float, Real
 
-from cogmap.cells.checks import check_array
 from cogmap.cells.measures.correlations import correlations, standardised
 from cogmap.cells.rates.maps import RateMaps
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_array
 
 
 def pattern_correlations(

@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float
 
-from cogmap.cells.checks import check_samples
 from cogmap.cells.measures.information import spatial_information
 from cogmap.cells.measures.rayleigh import rayleigh_test
 from cogmap.cells.measures.stability import curve_stability
@@ -14,6 +13,7 @@ from cogmap.cells.rates.bins import BinEdges
 from cogmap.cells.rates.maps import RateMaps, rate_maps
 from cogmap.cells.rates.spikes import SECONDS, check_seconds
 from cogmap.cells.rates.tuning import mean_vectors, tuning_curves, tuning_widths
+from cogmap.inputs import check_samples
 
 LEAST_VECTOR = 0.5
 """A head-direction cell's mean vector is longer."""

@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float
 
-from cogmap.cells.checks import check_samples
 from cogmap.cells.measures.coherence import coherence
 from cogmap.cells.measures.fields import PlaceFields, place_fields
 from cogmap.cells.measures.information import selectivity, sparsity, spatial_information
@@ -14,6 +13,7 @@ from cogmap.cells.measures.stability import map_stability
 from cogmap.cells.rates.bins import heading_bin, means_by_bin
 from cogmap.cells.rates.maps import RateMaps, rate_maps
 from cogmap.cells.rates.tuning import mean_vectors
+from cogmap.inputs import check_samples
 
 DIRECTION_BINS = 12
 LEAST_INFORMATION = 0.5

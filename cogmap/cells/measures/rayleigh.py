@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Real
 
-from cogmap.cells.checks import check_samples
 from cogmap.cells.rates.bins import heading_bin
 from cogmap.cells.rates.ratios import ratio
+from cogmap.inputs import check_samples
 
 SMALL = 50
 """Spikes below which the terms of second order count."""

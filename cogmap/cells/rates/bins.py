@@ -8,9 +8,9 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
 from scipy import ndimage, sparse
 
-from cogmap.cells.checks import check_array
 from cogmap.cells.rates.ratios import ratio
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_array
 
 ON_EDGE = 1e-6
 """A position this near (m) to the outermost edges is on them: multiples of a bin are not exact in binary."""

@@ -8,10 +8,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy import ndimage
 
-from cogmap.cells.checks import check_samples
 from cogmap.cells.rates.bins import BinEdges, bin_edges, sums_by_bin
 from cogmap.cells.rates.ratios import ratio
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_samples
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Real
 
-from cogmap.cells.checks import check_samples
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_samples
 
 LEAST_SHIFT = 100
 """Views, about 30 s of a walk: by then the animal is elsewhere."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float, Int
 
-from cogmap.cells.checks import check_samples
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_samples
 
 PEAK = 20.0
 """Highest rate of a cell that spikes, Hz."""

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from jaxtyping import Complex, Float
 
-from cogmap.cells.checks import check_samples
 from cogmap.cells.rates.bins import heading_bin, heading_centres, means_by_bin
+from cogmap.cells.rates.maps import RateMaps
 from cogmap.cells.rates.ratios import ratio
+from cogmap.inputs import check_samples
+
+
+class Tuning(NamedTuple):
+    """Rate maps and tuning curves of a population."""
+
+    maps: RateMaps
+    curves: Float[np.ndarray, "cells bins"]
+    """`tuning_curves` of the same cells, Hz."""
 
 
 def tuning_curves(

@@ -13,8 +13,8 @@ import numpy as np
 from jaxtyping import Float
 
 from arena import Arena
-from cogmap.cells.checks import check_array
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_array
 
 PATIENCE = 600
 """Seconds after which the planner is given up."""

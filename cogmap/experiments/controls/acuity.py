@@ -63,7 +63,7 @@ def look(setting: Setting, columns: int, *, fresh: bool = False) -> Recording:
 
 
 def _learn(setting: Setting, walk: Recording, fresh: Recording, charts: int) -> dict[str, Any]:
-    cmap = grow_map(replace(setting, map={**setting.map, "charts": charts}), walk)
+    cmap = grow_map(walk, {**setting.map, "charts": charts}, seed=setting.seed)
     ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
     known, asked = (perceive(cmap, one.views) for one in (walk, fresh))
     return {

@@ -9,12 +9,12 @@ import pandas as pd
 from jaxtyping import Float
 
 from arena import Arena, Brownian, Camera, Recording
-from cogmap.cells import RateMaps, bin_edges, mean_vectors, rate_maps, tuning_curves
+from cogmap.cells import RateMaps, Tuning, bin_edges, mean_vectors, rate_maps, tuning_curves
 from cogmap.errors import CogmapError
 from cogmap.evaluation.populations import grow_map, map_correlations, perceive, trust
 from cogmap.experiments.conditions import Setting, poses_of
 from cogmap.experiments.result import Result
-from cogmap.plots import Tuning, plot_examples
+from cogmap.plots import plot_examples
 
 PLATFORM, ROOM = 1.5, 2.5
 """Half the side of the platform and of the room, m."""
@@ -39,7 +39,7 @@ def cue_rotation(setting: Setting) -> Result:
         )
         for turns, late in ((0, 0), (0, 1), (1, 2))
     )
-    cmap = grow_map(setting, walk)
+    cmap = grow_map(walk, setting.map, seed=setting.seed)
     lit = perceive(cmap, before.views), perceive(cmap, after.views)
     dark = cmap.perceive(odours=before.odours), cmap.perceive(odours=after.odours)
     place = {

@@ -22,7 +22,7 @@ def darkness(setting: Setting) -> Result:
     camera = Camera.panoramic()
     walk = setting.explore(Brownian(), camera)
     fresh = setting.explore(Brownian(), camera, fresh=True)
-    cmap = grow_map(setting, walk)
+    cmap = grow_map(walk, setting.map, seed=setting.seed)
     ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
     train = perceive(cmap, walk.views), ground.known
     light, dark = perceive(cmap, fresh.views), cmap.perceive(odours=fresh.odours)

@@ -63,7 +63,7 @@ def neurons(setting: Setting) -> Result:
     camera = Camera.panoramic()
     walk = setting.explore(Brownian(), camera)
     fresh = setting.explore(Brownian(), camera, fresh=True)
-    cmap = grow_map(setting, walk)
+    cmap = grow_map(walk, setting.map, seed=setting.seed)
     step = max(1, len(walk) // REMEMBERED)
     ground = Ground.of(setting.room, poses_of(walk)[::step], poses_of(fresh))
     views = np.asarray(walk.views[::step]), fresh.views

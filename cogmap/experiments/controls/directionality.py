@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from arena import Brownian, Camera, Motion, Track
+from cogmap.cells import Tuning
 from cogmap.evaluation.populations import (
     Ground,
     Measured,
@@ -16,7 +17,7 @@ from cogmap.evaluation.populations import (
 )
 from cogmap.experiments.conditions import Setting, poses_of
 from cogmap.experiments.result import Result
-from cogmap.plots import Tuning, plot_cell_types, plot_examples
+from cogmap.plots import plot_cell_types, plot_examples
 
 DIRECTIONAL = 0.5
 """A longer in-field vector is that of a cell that fires three times as much one way as the other."""
@@ -44,7 +45,7 @@ def directionality(setting: Setting) -> Result:
         fresh = setting.explore(motion, Camera.panoramic(), fresh=True)
         known = poses_of(walk)
         ground = Ground(known, poses_of(fresh), known[:, :2])
-        cmap = grow_map(setting, walk)
+        cmap = grow_map(walk, setting.map, seed=setting.seed)
         codes = cmap.encode(walk.views), cmap.encode(fresh.views)
         rates = {
             "vision_only": competing_cells(*codes, seed=setting.seed)[0],

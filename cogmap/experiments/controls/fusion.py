@@ -26,7 +26,7 @@ def fusion(setting: Setting) -> Result:
     camera = Camera.panoramic()
     walk = setting.explore(Brownian(), camera)
     fresh = setting.explore(Brownian(), camera, fresh=True)
-    cmap = grow_map(setting, walk)
+    cmap = grow_map(walk, setting.map, seed=setting.seed)
     ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
     known, asked = (perceive(cmap, one.views) for one in (walk, fresh))
     codes = [cmap.encode(one.views) for one in (walk, fresh)]

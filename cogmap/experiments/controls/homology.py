@@ -113,7 +113,7 @@ def expected_numbers(room: Arena, start: Float[np.ndarray, "2"]) -> dict[str, Nu
 def _visit(setting: Setting) -> list[Case]:
     """Learn a map of one room and look at all that it knows."""
     walk = setting.explore(Brownian(), Camera.panoramic())
-    cmap = grow_map(setting, walk)
+    cmap = grow_map(walk, setting.map, seed=setting.seed)
     activity = perceive(cmap, walk.views)
     found = homologies(cmap.encode(walk.views), activity, seed=setting.seed)
     nerves = {name: population_nerve(getattr(activity, name)) for name in POPULATIONS if name in found}

@@ -63,7 +63,7 @@ def _learn(
         smell(setting.room, one, count=count, noise=noise, seed=setting.seed + late)
         for one, late in ((walk, 0), (fresh, FRESH_SEED))
     ]
-    cmap = grow_map(setting, replace(walk, odours=smells[0]))
+    cmap = grow_map(replace(walk, odours=smells[0]), setting.map, seed=setting.seed)
     known, asked = (perceive(cmap, one.views) for one in (walk, fresh))
     place = ground.measure(asked.place)
     return {

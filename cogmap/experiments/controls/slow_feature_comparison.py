@@ -66,7 +66,7 @@ def _learn(setting: Setting, way: Way) -> tuple[dict[str, Any], dict[str, Measur
         walk = walk[np.random.default_rng(setting.seed).permutation(len(walk))]
     known, poses = poses_of(walk), poses_of(fresh)
     ground = Ground(known, poses, known[:, :2])
-    cmap = grow_map(setting, walk)
+    cmap = grow_map(walk, setting.map, seed=setting.seed)
     codes = [cmap.encode(one.views) for one in (walk, fresh)]
     learnt, slow = slow_cells(codes[0], *codes, seed=setting.seed)
     before, after = (perceive(cmap, one.views) for one in (walk, fresh))

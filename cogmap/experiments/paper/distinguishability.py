@@ -12,9 +12,9 @@ from jaxtyping import Float
 from sklearn.decomposition import PCA
 
 from arena import Arena, Brownian, Camera
+from cogmap.evaluation.pose_agreement import motion_distances
 from cogmap.experiments.conditions import Setting, poses_of
 from cogmap.experiments.result import Result
-from cogmap.features.image_distances import motion_distances
 from cogmap.graph import nearest_points
 from cogmap.plots import plot_barcodes, plot_confusion, plot_views
 from cogmap.shape import Betti, betti

@@ -13,12 +13,12 @@ from matplotlib.figure import Figure
 
 from arena import Arena, Body, Brownian, Camera
 from cogmap.errors import CogmapError
-from cogmap.evaluation.deviation import path_length
+from cogmap.evaluation.deviation import path_deviation, path_length
 from cogmap.evaluation.peers.prm import prm_paths
 from cogmap.evaluation.shortest import shortest_lengths
 from cogmap.experiments.conditions import Setting, poses_of
 from cogmap.experiments.result import Result
-from cogmap.navigation import PanoramaCode, VisualRoadmap, path_deviation
+from cogmap.navigation import PanoramaCode, VisualRoadmap
 from cogmap.plots import plot_routes, plot_views
 
 PAIRS, APART = 200, 1.0

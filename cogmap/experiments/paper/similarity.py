@@ -9,10 +9,10 @@ import pandas as pd
 from jaxtyping import Float, Int
 
 from arena import Brownian, Camera
+from cogmap.evaluation.pose_agreement import motion_distances, pose_agreement
 from cogmap.experiments.conditions import Setting, poses_of
 from cogmap.experiments.result import Result
 from cogmap.features import BagOfWords, cosine_distances, earth_mover_distances, pixel_distances
-from cogmap.features.image_distances import motion_distances, pose_agreement
 from cogmap.plots import plot_likeness
 
 QUERIES = 500

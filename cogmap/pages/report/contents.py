@@ -13,8 +13,8 @@ import numpy as np
 import pandas as pd
 from pyarrow import ArrowException
 
+from cogmap.atomic import METRICS
 from cogmap.errors import CogmapError
-from cogmap.experiments.outputs import METRICS
 from cogmap.experiments.provenance import ABOUT
 from cogmap.pages.report.captions import caption
 from cogmap.tables import as_rows, shown

@@ -8,7 +8,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from cogmap.cells.checks import check_array
+from cogmap.inputs import check_array
 from cogmap.plots.cells.place_cells import COLOURS
 from cogmap.plots.style import (
     QUARTERS,

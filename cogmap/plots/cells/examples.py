@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float
@@ -11,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cogmap.cells.rates.maps import RateMaps
+from cogmap.cells.rates.tuning import Tuning
 from cogmap.errors import CogmapError
 from cogmap.plots.cells.place_cells import COLOURS
 from cogmap.plots.style import ABSENT, CYCLIC, INK, QUARTERS, SMALL, SOFT, TINY, new_figure, tidy
@@ -21,14 +21,6 @@ WIDTH = 1.7
 """Of a cell, in inches."""
 THINNEST = 0.25
 """Height of a map over its width; that of a path is stretched to it."""
-
-
-class Tuning(NamedTuple):
-    """What is drawn of a population."""
-
-    maps: RateMaps
-    curves: Float[np.ndarray, "cells bins"]
-    """`tuning_curves` of the same cells, Hz."""
 
 
 def plot_examples(populations: Mapping[str, Tuning]) -> Figure:

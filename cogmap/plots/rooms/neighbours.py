@@ -6,8 +6,8 @@ import numpy as np
 from jaxtyping import Float, UInt8
 from matplotlib.figure import Figure
 
-from cogmap.cells.checks import check_array
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_array
 from cogmap.plots.style import BAD, INK, TINY, new_figure
 
 WIDTH = 12.0

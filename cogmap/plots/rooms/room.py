@@ -16,7 +16,7 @@ from arena.rooms.light import Light
 from arena.rooms.materials import texture
 from arena.rooms.parts import Solid, Wall
 from arena.smell.odour import FAINTEST
-from cogmap.cells.checks import check_array
+from cogmap.inputs import check_array
 from cogmap.plots.style import INK, SMALL, SOFT, TINY, direction_colours, new_figure, tidy_room
 
 GRID = 0.04

@@ -11,7 +11,7 @@ from matplotlib.patches import Polygon
 
 from arena.bodies.disc import Body
 from arena.rooms.arena import Arena
-from cogmap.cells.checks import check_array
+from cogmap.inputs import check_array
 from cogmap.plots.rooms.room import draw_surfaces
 from cogmap.plots.style import BAD, GOOD, INK, SMALL, new_figure, tidy_room
 

@@ -7,8 +7,8 @@ from jaxtyping import Float, UInt8
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
-from cogmap.cells.checks import check_array
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_array
 from cogmap.plots.style import INK, QUARTERS, SMALL, new_figure, tidy
 
 WIDTH = 12.0

@@ -11,7 +11,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from arena.rooms.arena import Arena
-from cogmap.cells.checks import check_array
+from cogmap.inputs import check_array
 from cogmap.plots.rooms.room import draw_surfaces
 from cogmap.plots.style import (
     INK,

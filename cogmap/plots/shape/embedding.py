@@ -10,8 +10,8 @@ from jaxtyping import Float
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
-from cogmap.cells.checks import check_array
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_array
 from cogmap.plots.style import INK, SMALL, TINY, colour_bar, direction_colours, heading_bar, new_figure, tidy
 
 POINTS = 6000

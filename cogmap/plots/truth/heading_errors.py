@@ -8,8 +8,8 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cogmap.cells.checks import check_array
 from cogmap.cells.rates.bins import bin_edges, means_by_bin
+from cogmap.inputs import check_array
 from cogmap.plots.style import (
     ABSENT,
     BAD,

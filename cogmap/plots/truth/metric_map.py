@@ -9,8 +9,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from cogmap.cells.checks import check_array
 from cogmap.cells.rates.bins import bin_edges, means_by_bin
+from cogmap.inputs import check_array
 from cogmap.plots.style import BAD, GOOD, SOFT, colour_bar, new_figure, tidy, tidy_legend, tidy_room
 
 BIN = 0.2

@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from cogmap.cells.checks import check_array
+from cogmap.inputs import check_array
 from cogmap.plots.style import BAD, GOOD, INK, SOFT, colour_bar, new_figure, tidy, tidy_legend, tidy_room
 
 SEGMENTS = 1500

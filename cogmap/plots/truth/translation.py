@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.figure import Figure
 
-from cogmap.cells.checks import check_array
+from cogmap.inputs import check_array
 from cogmap.plots.style import direction_colours, heading_bar, new_figure, tidy
 
 

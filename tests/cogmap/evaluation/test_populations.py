@@ -1,11 +1,8 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from arena import Arena, Brownian, Camera
+from arena import Arena, Brownian, Camera, explore
 from cogmap.evaluation.populations import Ground, as_one_table, competing_cells, grow_map
-from cogmap.experiments.conditions import Setting
 
 
 @pytest.fixture(scope="module")
@@ -59,11 +56,10 @@ def test_cells_that_compete_for_places_are_place_cells(ground: Ground) -> None:
     assert ground.position(ground.known[:, :2], ground.poses[:, :2])["position_median_m"] < 0.05
 
 
-def test_a_map_is_grown_as_the_setting_has_it() -> None:
-    setting = Setting(Arena.load("furnished"), 120, seed=3)
-    walk = setting.explore(Brownian(), Camera.panoramic(90, 15))
-    usual = grow_map(setting, walk)
+def test_a_map_is_grown_as_told() -> None:
+    walk = explore(Arena.load("furnished"), Brownian(), Camera.panoramic(90, 15), views=120, seed=3)
+    usual = grow_map(walk, {}, seed=3)
     assert (usual.charts, usual.seed, usual.place_cells) == (40, 3, 150)
-    other = grow_map(replace(setting, map={"charts": 30, "place_cells": 20}), walk)
+    other = grow_map(walk, {"charts": 30, "place_cells": 20}, seed=3)
     assert (other.charts, other.seed) == (30, 3)
     assert other.perceive(odours=walk.odours).place.shape == (120, 20)

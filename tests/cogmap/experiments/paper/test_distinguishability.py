@@ -1,8 +1,8 @@
 import numpy as np
 
 from arena import Arena, Camera, Wall
+from cogmap.evaluation.pose_agreement import motion_distances
 from cogmap.experiments.paper.distinguishability import ROOMS, _apart, _opposite, retina_codes
-from cogmap.features.image_distances import motion_distances
 
 CAMERA = Camera.panoramic()
 POSES = np.array([[1.2, 0.4, 0.3], [-0.5, 0.7, 2.0], [0.1, -0.9, -3.0]])

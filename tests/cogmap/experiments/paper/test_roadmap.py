@@ -5,10 +5,11 @@ import pytest
 
 from arena import Arena, Box, Wall
 from cogmap import CogmapError
+from cogmap.evaluation.deviation import path_deviation
 from cogmap.experiments.conditions import Setting
 from cogmap.experiments.paper import roadmap as module
 from cogmap.experiments.paper.roadmap import _arrives, _plan, _routes_table, _scores, _summary, draw_pairs
-from cogmap.navigation import VisualRoadmap, path_deviation
+from cogmap.navigation import VisualRoadmap
 
 ROOM = Arena.create(
     name="one box",

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from cogmap.cells import rate_maps, tuning_curves
+from cogmap.cells import Tuning, rate_maps, tuning_curves
 from cogmap.errors import CogmapError
-from cogmap.plots.cells.examples import COUNT, Tuning, plot_examples
+from cogmap.plots.cells.examples import COUNT, plot_examples
 
 
 @pytest.fixture(scope="module")
