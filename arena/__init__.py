@@ -2,7 +2,7 @@
 
 import gymnasium
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.exploration import explore
 from arena.eye.camera import Camera
@@ -20,6 +20,9 @@ from arena.rooms.parts import Block, Box, Pillar, Source, Wall
 from arena.smell.nose import Nose
 from arena.smell.odour import OdourField
 
+Body = Disc
+"""The body unless told; the contract that bodies fulfil, once there are others."""
+
 __all__ = [
     "Arena",
     "ArenaError",
@@ -30,6 +33,7 @@ __all__ = [
     "Camera",
     "Chemotaxis",
     "Cyclic",
+    "Disc",
     "Light",
     "Motion",
     "Nose",

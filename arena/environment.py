@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import UInt8
 from pydantic import Field
 
-from arena.bodies.disc import Body, Drive
+from arena.bodies.disc import Disc, Drive
 from arena.errors import ArenaError
 from arena.exploration import Eye
 from arena.eye.camera import Camera
@@ -24,7 +24,7 @@ Observation = dict[str, np.ndarray]
 Reward = Callable[[Observation, Observation], float]
 """Judges a step by what was sensed before and after it."""
 
-_BODY, _CAMERA, _NOSE = Body(), Camera.panoramic(92, 15), Nose()
+_BODY, _CAMERA, _NOSE = Disc(), Camera.panoramic(92, 15), Nose()
 _FLOAT32 = np.finfo(np.float32)
 _FRAME = (240, 480)
 """Rows of a rendered frame, and most columns of the view in it."""
@@ -101,7 +101,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         *,
         camera: Eye = _CAMERA,
         nose: Nose = _NOSE,
-        body: Body = _BODY,
+        body: Disc = _BODY,
         control: Literal["velocity", "wheels"] = "velocity",
         reward: Reward = _CLIMB,
         dt: float = 0.05,

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float, UInt8
 from tqdm import tqdm
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.base import Motion
 from arena.recordings import storage
@@ -17,7 +17,7 @@ from arena.recordings.sharding import Writer, shards
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
 
-_BODY, _NOSE = Body(), Nose()
+_BODY, _NOSE = Disc(), Nose()
 
 
 @runtime_checkable
@@ -51,7 +51,7 @@ def explore(
     camera: Eye,
     *,
     nose: Nose = _NOSE,
-    body: Body = _BODY,
+    body: Disc = _BODY,
     views: int | None = None,
     seed: int = 0,
     out: str | Path | None = None,
@@ -153,7 +153,7 @@ class _Looking(NamedTuple):
                 bar.update(rows.stop - rows.start)
 
 
-def _parameters(part: Eye | Motion | Body | Nose) -> dict[str, Any]:
+def _parameters(part: Eye | Motion | Disc | Nose) -> dict[str, Any]:
     """Describe a part as it will read back from JSON, where tuples are lists."""
     described: dict[str, Any] = json.loads(json.dumps({"kind": type(part).__name__, **part.model_dump()}))
     return described

@@ -28,10 +28,10 @@ class Settings(BaseModel):
         try:
             super().__init__(**fields)
         except ValidationError as error:
-            raise ArenaError(f"{type(self).__name__}: {complaint(error)}") from None
+            raise ArenaError(f"{type(self).__name__}: {first_error(error)}") from None
 
 
-def complaint(error: ValidationError) -> str:
+def first_error(error: ValidationError) -> str:
     """Say in one line where the first mistake is, what was given there and what is wrong with it."""
     first = error.errors()[0]
     place = first["loc"]

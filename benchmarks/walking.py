@@ -3,7 +3,7 @@
 import numpy as np
 import pymunk
 
-from arena import Arena, Body, Brownian, Chemotaxis, Cyclic, Motion, Nose, Rotation, Track
+from arena import Arena, Brownian, Chemotaxis, Cyclic, Disc, Motion, Nose, Rotation, Track
 from benchmarks.timing import seconds
 
 MOTIONS: tuple[Motion, ...] = (Rotation(), Cyclic(), Brownian(), Chemotaxis(), Track())
@@ -27,7 +27,7 @@ def walked(room: Arena, motion: Motion) -> float:
 
     def work() -> None:
         rng = np.random.default_rng(0)
-        walk = motion.walk(room, Body(), VIEWS, rng)
+        walk = motion.walk(room, Disc(), VIEWS, rng)
         Nose().smell(room.odours.concentration(walk.poses[:, :2]), walk.times, rng)
 
     return VIEWS / seconds(work, ROUNDS)
@@ -35,9 +35,9 @@ def walked(room: Arena, motion: Motion) -> float:
 
 def stepped(room: Arena) -> dict[str, float]:
     """Step round a circle in open space, along a wall, and pymunk's own step of the same space, in turn."""
-    open_space, wall = Body().place(room, (0.0, 0.0, 0.0)), Body().place(room, (-1.82, -1.32, 0.0))
+    open_space, wall = Disc().place(room, (0.0, 0.0, 0.0)), Disc().place(room, (-1.82, -1.32, 0.0))
     space, disc = room.space(), pymunk.Body(mass=1.0, moment=float("inf"))
-    space.add(disc, pymunk.Circle(disc, Body().radius))
+    space.add(disc, pymunk.Circle(disc, Disc().radius))
 
     def circle() -> None:
         for _ in range(STEPS):

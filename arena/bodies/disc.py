@@ -22,7 +22,7 @@ Pose = tuple[float, float, float]
 
 
 class Drive:
-    """A body at large in an arena; `Body.place` makes one.
+    """A body at large in an arena; `Disc.place` makes one.
 
     Each step gives a pymunk disc the velocity of the wheels and lets pymunk move it and find what it hits. A
     disc that overlaps a wall is pushed out along the shortest way, so it slides without friction; where that
@@ -44,7 +44,7 @@ class Drive:
     turn: float = 0.0
     contact: float | None = None
 
-    def __init__(self, body: "Body", arena: Arena, pose: Pose) -> None:
+    def __init__(self, body: "Disc", arena: Arena, pose: Pose) -> None:
         self.body = body
         self._max_speed, self._max_turn = body.max_speed, body.max_turn
         self._acceleration, self._turn_acceleration = body.max_acceleration, body.max_turn_acceleration
@@ -148,7 +148,7 @@ def _approach(now: float, goal: float, limit: float, dt: float) -> tuple[float, 
     return end, 0.5 * (now + end)
 
 
-class Body(Settings):
+class Disc(Settings):
     """A disc with two driven wheels, such as the Turtlebot 2.
 
     Parameters
@@ -180,7 +180,7 @@ class Body(Settings):
     def from_wheels(self, left: float, right: float) -> tuple[float, float]:
         """Turn the speeds of the wheels' rims (m/s) into the speed (m/s) and turn rate (rad/s) of the body.
 
-        >>> speed, turn = Body(wheel_base=0.2).from_wheels(0.1, 0.3)
+        >>> speed, turn = Disc(wheel_base=0.2).from_wheels(0.1, 0.3)
         >>> round(speed, 12), round(turn, 12)
         (0.2, 1.0)
         """

@@ -9,7 +9,7 @@ import typing
 import numpy as np
 from numba import njit
 
-from arena.eye.texture_sampling import whole
+from arena.eye.texture_sampling import in_blocks
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -25,10 +25,10 @@ def finish(
 ) -> None:
     """Cut rows of a column to whole grey levels; the others in sight are backdrop."""
     at, source = np.uint64(slot), np.uint64(behind)
-    for n in range(whole(4 * (sight[1] - sight[0]))):
+    for n in range(in_blocks(4 * (sight[1] - sight[0]))):
         k = np.uint64(4 * sight[0]) + np.uint64(n)
         quad[at, k] = backdrop[source, k]
-    for n in range(whole(4 * (rows[1] - rows[0]))):
+    for n in range(in_blocks(4 * (rows[1] - rows[0]))):
         k = np.uint64(4 * rows[0]) + np.uint64(n)
         quad[at, k] = np.uint8(np.int32(column[k]))
     for n in range(32):  # these may have been cut, too

@@ -41,19 +41,22 @@ FACE = np.dtype(
     align=True,
 )
 """A vertical face of a room, as in `arena.rooms.surfaces.Surfaces`: its ends and height in m, where along its
-material it starts (m), the solid it bounds, how bright its two sides are, and the lid of its solid."""
+material it starts (m), the solid it bounds, how bright its two sides are, and the colour of its solid's
+top."""
 
-SIGHT = np.dtype([(name, "f8") for name in ("ahead", "left", "at", "along", "across", "length", "aside")])
+PROJECTED_FACE = np.dtype(
+    [(name, "f8") for name in ("ahead", "left", "at", "along", "across", "length", "aside")]
+)
 """A face as seen from a pose: the ray towards (a, l) meets it at 1 / depth = ahead a + left l, which is
 at + depth (along a + across l) m along its `length` m. Its left is seen if aside > 0."""
 
-TOUCH = np.dtype(
+COLUMN_SPAN = np.dtype(
     [("face", "i8"), *((name, "f8") for name in ("begin", "end", "first", "last", "start", "stop"))]
 )
 """A face in a column: where in it (0 to 1) the face begins and ends, and at the column's two sides 1 / depth
 and how far along its material (m) it is met."""
 
-HIT = np.dtype([("touch", "i8"), ("near", "f8")])
+RAY_HIT = np.dtype([("touch", "i8"), ("near", "f8")])
 """A face that a ray meets, by its number in the column, and 1 / depth."""
 
 Faces = Shaped[np.ndarray, " faces"]
@@ -125,7 +128,7 @@ def _project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray
 
 @njit(cache=True, error_model="numpy")
 @typing.no_type_check
-def look(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray, span: np.ndarray) -> tuple:
+def project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray, span: np.ndarray) -> tuple:
     """Project the faces, and list by columns which of them touch it.
 
     Fills `sights` and `span`, of twice as many rows: first and last image coordinate of each face and, from
@@ -204,12 +207,12 @@ def touch(
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
-def _hidden(one: np.record, veil: np.record, faces: np.ndarray, lens: Lens) -> bool:
+def _hidden(one: np.record, occluder: np.record, faces: np.ndarray, lens: Lens) -> bool:
     """Whether a face is behind another that fills the column and rises higher in the image."""
     middle = 0.5 * (one.begin + one.end)
-    near, before = nearness(one, middle), nearness(veil, middle)
-    rise, crest = faces[one.face].height - lens.eye, faces[veil.face].height - lens.eye
-    return near < before and near * rise <= before * crest
+    near, before = nearness(one, middle), nearness(occluder, middle)
+    rise, skyline = faces[one.face].height - lens.eye, faces[occluder.face].height - lens.eye
+    return near < before and near * rise <= before * skyline
 
 
 @njit(cache=True, error_model="numpy", forceinline=True)
@@ -219,18 +222,18 @@ def split(low: int, high: int, faces: np.ndarray, lens: Lens, touches: np.ndarra
 
     The column's faces are touches[low:high], here as below.
     """
-    veil, crest = -1, -np.inf  # the face that fills the column and rises highest
+    occluder, skyline = -1, -np.inf  # the face that fills the column and rises highest
     for k in range(low, high):
         one = touches[k]
         rise = nearness(one, 0.5) * (faces[one.face].height - lens.eye)
-        if one.begin == 0.0 and one.end == 1.0 and rise > crest:
-            veil, crest = k, rise
+        if one.begin == 0.0 and one.end == 1.0 and rise > skyline:
+            occluder, skyline = k, rise
     edges[0], edges[1], parts = 0.0, 1.0, 1
     for k in range(low, high):
         one = touches[k]
         if one.begin == 0.0 and one.end == 1.0:
             continue
-        if veil >= 0 and _hidden(one, touches[veil], faces, lens):
+        if occluder >= 0 and _hidden(one, touches[occluder], faces, lens):
             continue
         for x in (one.begin, one.end):
             i = parts
@@ -296,9 +299,9 @@ def _middle(
 @typing.no_type_check
 def _measure(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
     """Measure the distances from one pose."""
-    sights, span = np.empty(len(faces), SIGHT), np.empty((2 * len(faces), 2))
-    first, listed = look(pose, faces, lens, sights, span)
-    touches, hits = np.empty(len(listed), TOUCH), np.empty(len(span), HIT)
+    sights, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
+    first, listed = project(pose, faces, lens, sights, span)
+    touches, hits = np.empty(len(listed), COLUMN_SPAN), np.empty(len(span), RAY_HIT)
     for c in range(lens.width):
         ahead, left = direction(c + 0.5, lens)
         met = _middle(c, first, listed, faces, lens, sights, span, touches, hits)
@@ -309,9 +312,9 @@ def _measure(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -
 @typing.no_type_check
 def _name(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
     """Name the surface at the middle of every pixel of one view."""
-    sights, span = np.empty(len(faces), SIGHT), np.empty((2 * len(faces), 2))
-    first, listed = look(pose, faces, lens, sights, span)
-    touches, hits = np.empty(len(listed), TOUCH), np.empty(len(span), HIT)
+    sights, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
+    first, listed = project(pose, faces, lens, sights, span)
+    touches, hits = np.empty(len(listed), COLUMN_SPAN), np.empty(len(span), RAY_HIT)
     horizon = 0.5 * lens.height
     for c in range(lens.width):
         met = _middle(c, first, listed, faces, lens, sights, span, touches, hits)

@@ -2,7 +2,7 @@
 
 Within a part of a column the gaze climbs from the floor at the animal's feet to the ceiling, painting
 whatever is not hidden behind something nearer. A solid lower than the eye is ground from its near face to its
-far one, in the colour of its lid.
+far one, in the colour of its top.
 """
 
 import typing
@@ -12,16 +12,29 @@ from jaxtyping import Float, Int, UInt8, UInt32
 from numba import njit, prange
 
 from arena.eye.pixels import emit, emit_words, fill, finish
-from arena.eye.raycast import HIT, SIGHT, TOUCH, Faces, Lens, Poses, along, look, meet, nearness, split, touch
+from arena.eye.raycast import (
+    COLUMN_SPAN,
+    PROJECTED_FACE,
+    RAY_HIT,
+    Faces,
+    Lens,
+    Poses,
+    along,
+    meet,
+    nearness,
+    project,
+    split,
+    touch,
+)
 from arena.eye.texture_sampling import (
     BLOCK,
     Ground,
     fade_in,
+    in_blocks,
     paint_backdrop,
     paint_ground,
     paint_wall,
     unroll,
-    whole,
 )
 from arena.rooms.materials import LEVELS, TEXEL
 
@@ -41,7 +54,7 @@ def _paint_face(
     rays: tuple,
     lens: Lens,
     texels: np.ndarray,
-    place: np.ndarray,
+    level_starts: np.ndarray,
     strip: np.ndarray,
     texel: np.ndarray,
     mix: tuple,
@@ -63,7 +76,7 @@ def _paint_face(
         if layer == 1:
             step, v, level = 0.5 * step, 0.5 * v, level + 1
         up = max(int(v - bottom * step) - 1, 0), int(v - top * step) + 3
-        unroll(stretch, up, level, gain, face.start, texels, place, strip)
+        unroll(stretch, up, level, gain, face.start, texels, level_starts, strip)
         paint_wall(rows, share, (v - up[0], step), strip, texel, mix, column)
 
 
@@ -82,7 +95,7 @@ def _climb(
     lens: Lens,
     floor: Ground,
     texels: np.ndarray,
-    place: np.ndarray,
+    level_starts: np.ndarray,
     backdrop: np.ndarray,
     behind: int,
     strip: np.ndarray,
@@ -99,7 +112,7 @@ def _climb(
         face, sight = faces[one.face], sights[one.face]
         foot = max(horizon + scale * (lens.eye - ground), peak)
         if foot < gaze:
-            paint_ground(foot, gaze, weight, colour, eye, lens, texels, place, column)
+            paint_ground(foot, gaze, weight, colour, eye, lens, texels, level_starts, column)
             gaze = foot
         if face.closed and sight.aside > 0.0:
             ground, colour = 0.0, floor
@@ -116,7 +129,7 @@ def _climb(
                 rays,
                 lens,
                 texels,
-                place,
+                level_starts,
                 strip,
                 texel,
                 mix,
@@ -128,7 +141,7 @@ def _climb(
         if face.closed and face.height < lens.eye:
             ground, colour = face.height, Ground(face.red, face.green, face.blue, -1, 1.0)
     if gaze > horizon:
-        paint_ground(horizon, gaze, weight, colour, eye, lens, texels, place, column)
+        paint_ground(horizon, gaze, weight, colour, eye, lens, texels, level_starts, column)
         gaze = horizon
     paint_backdrop(peak, gaze, weight, backdrop, behind, column)
 
@@ -155,22 +168,22 @@ def _paint(
     lens: Lens,
     floor: Ground,
     texels: np.ndarray,
-    place: np.ndarray,
+    level_starts: np.ndarray,
     backdrop: np.ndarray,
     ray: np.ndarray,
     out: np.ndarray,
     words: np.ndarray,
 ) -> None:
     """Paint the view from one pose."""
-    sights, span = np.empty(len(faces), SIGHT), np.empty((2 * len(faces), 2))
-    hits, edges = np.empty(len(span), HIT), np.empty(2 * len(span) + 2)
+    sights, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
+    hits, edges = np.empty(len(span), RAY_HIT), np.empty(2 * len(span) + 2)
     strip = np.zeros(4 * (int(faces["height"].max() / TEXEL) + BLOCK), np.float32)
     texel, rows = np.empty(lens.height + BLOCK, np.int32), lens.height + BLOCK
     mix = np.empty(rows, np.float32), np.empty(rows, np.float32), np.empty(rows, np.float32)
     column, quad = np.empty(backdrop.shape[1], np.float32), np.empty((4, backdrop.shape[1]), np.uint8)
     quad_words, columns = quad.view(np.uint32), len(backdrop)
-    first, listed = look(pose, faces, lens, sights, span)
-    touches, painted = np.empty(len(listed), TOUCH), np.empty((lens.width, 2), np.int64)
+    first, listed = project(pose, faces, lens, sights, span)
+    touches, painted = np.empty(len(listed), COLUMN_SPAN), np.empty((lens.width, 2), np.int64)
     for c in range(lens.width):
         rays = (ray[c, 0], ray[c, 1]), (ray[c + 1, 0], ray[c + 1, 1])
         touch(c, first[c], first[c + 1], listed, rays, faces, sights, span, touches)
@@ -188,7 +201,7 @@ def _paint(
         eye = pose[0], pose[1], cosine * ahead - sine * left, sine * ahead + cosine * left
         top, bottom = painted[c, 0], painted[c, 1]
         behind = c if columns > 1 else 0
-        for n in range(whole(4 * (bottom - top))):
+        for n in range(in_blocks(4 * (bottom - top))):
             column[np.uint64(4 * top) + np.uint64(n)] = ROUNDS
         for p in range(split(low, high, faces, lens, touches, edges)):
             part = edges[p], edges[p + 1]
@@ -206,7 +219,7 @@ def _paint(
                 lens,
                 floor,
                 texels,
-                place,
+                level_starts,
                 backdrop,
                 behind,
                 strip,
@@ -229,7 +242,7 @@ def render_alone(
     lens: Lens,
     floor: Ground,
     texels: UInt8[np.ndarray, " bytes"],
-    place: Int[np.ndarray, "levels_along levels_up"],
+    level_starts: Int[np.ndarray, "levels_along levels_up"],
     backdrop: UInt8[np.ndarray, "columns blocks"],
     ray: Float[np.ndarray, "width_and_one 2"],
     out: UInt8[np.ndarray, "views height width 3"],
@@ -237,7 +250,7 @@ def render_alone(
 ) -> None:
     """Do the work of `render` without threads, which take a while to start."""
     for i in range(len(poses)):
-        _paint(poses[i], faces, lens, floor, texels, place, backdrop, ray, out[i], words[i])
+        _paint(poses[i], faces, lens, floor, texels, level_starts, backdrop, ray, out[i], words[i])
 
 
 @njit(parallel=True, cache=True, error_model="numpy")
@@ -248,7 +261,7 @@ def render(
     lens: Lens,
     floor: Ground,
     texels: UInt8[np.ndarray, " bytes"],
-    place: Int[np.ndarray, "levels_along levels_up"],
+    level_starts: Int[np.ndarray, "levels_along levels_up"],
     backdrop: UInt8[np.ndarray, "columns blocks"],
     ray: Float[np.ndarray, "width_and_one 2"],
     out: UInt8[np.ndarray, "views height width 3"],
@@ -256,9 +269,9 @@ def render(
 ) -> None:
     """Paint the view from every pose (m, m, rad) into `out`; views run in parallel.
 
-    `texels` and `place` are the textures, as in `arena.eye.scene.Scene`; `backdrop` is an empty world, as in
-    `arena.eye.background`. `ray` is the direction (ahead, left) between columns. `words` is the memory of
-    `out` in words of four bytes, or has no rows where a row is not made of whole words.
+    `texels` and `level_starts` are the textures, as in `arena.eye.scene.Scene`; `backdrop` is an empty
+    world, as in `arena.eye.background`. `ray` is the direction (ahead, left) between columns. `words` is the
+    memory of `out` in words of four bytes, or has no rows where a row is not made of whole words.
     """
     for i in prange(len(poses)):
-        _paint(poses[i], faces, lens, floor, texels, place, backdrop, ray, out[i], words[i])
+        _paint(poses[i], faces, lens, floor, texels, level_starts, backdrop, ray, out[i], words[i])

@@ -9,7 +9,7 @@ from jaxtyping import Float, Int, Shaped, UInt8
 from arena.eye.raycast import FACE
 from arena.eye.texture_sampling import BLOCK, Ground
 from arena.rooms.light import Light
-from arena.rooms.materials import ROOMS, tint, weave
+from arena.rooms.materials import ROOMS, mean_colour, mip_maps
 from arena.rooms.surfaces import Surfaces
 
 _UP = np.array([[0.0, 0.0, 1.0]])
@@ -22,19 +22,19 @@ class Scene(NamedTuple):
     """Of dtype `arena.eye.raycast.FACE`."""
     floor: Ground
     texels: UInt8[np.ndarray, " bytes"]
-    """Those of `arena.rooms.materials.Weave`, end to end."""
-    place: Int[np.ndarray, "levels_along levels_up"]
+    """Those of `arena.rooms.materials.MipMaps`, end to end."""
+    level_starts: Int[np.ndarray, "levels_along levels_up"]
 
 
 @lru_cache(maxsize=ROOMS)
 def _texels(names: tuple[str, ...]) -> UInt8[np.ndarray, " bytes"]:
-    return np.pad(weave(names).texels.ravel(), (0, BLOCK))
+    return np.pad(mip_maps(names).texels.ravel(), (0, BLOCK))
 
 
 def scene(surfaces: Surfaces, floor: str | tuple[int, int, int], light: Light | None) -> Scene:
     """Lay out a room for the kernels; `floor` is the name of a material or a colour."""
     names = surfaces.materials
-    woven = weave(names)
+    woven = mip_maps(names)
     begins = woven.texels.shape[1] * np.arange(len(names))
     faces = np.zeros(len(surfaces.height), FACE)
     faces["x0"], faces["y0"] = surfaces.start.T
@@ -47,17 +47,17 @@ def scene(surfaces: Surfaces, floor: str | tuple[int, int, int], light: Light | 
     right /= np.linalg.norm(right, axis=1, keepdims=True)
     faces["left_light"], faces["right_light"] = _brightness(light, -right), _brightness(light, right)
     above = float(_brightness(light, _UP)[0])
-    lids = np.stack([tint(name) for name in names])[surfaces.material]
+    top_colours = np.stack([mean_colour(name) for name in names])[surfaces.material]
     for solid in range(surfaces.solid.max() + 1):
-        lids[surfaces.solid == solid] = lids[surfaces.solid == solid].mean(axis=0)
-    faces["red"], faces["green"], faces["blue"] = above * lids.T
+        top_colours[surfaces.solid == solid] = top_colours[surfaces.solid == solid].mean(axis=0)
+    faces["red"], faces["green"], faces["blue"] = above * top_colours.T
     if isinstance(floor, str):
-        red, green, blue = (above * tint(floor)).tolist()
+        red, green, blue = (above * mean_colour(floor)).tolist()
         start = int(begins[names.index(floor)])
     else:
         red, green, blue = (above * channel for channel in floor)
         start = -1
-    return Scene(faces, Ground(red, green, blue, start, above), _texels(names), woven.place)
+    return Scene(faces, Ground(red, green, blue, start, above), _texels(names), woven.level_starts)
 
 
 def _brightness(light: Light | None, normals: Float[np.ndarray, "faces 3"]) -> Float[np.ndarray, " faces"]:

@@ -33,7 +33,7 @@ class Ground(typing.NamedTuple):
 
 @njit(cache=True, error_model="numpy", forceinline=True)
 @typing.no_type_check
-def whole(count: int) -> int:
+def in_blocks(count: int) -> int:
     """Round a count of numbers up to blocks of 32."""
     return (count + 31) & ~31
 
@@ -63,7 +63,7 @@ def _blend(
     """
     a, b, c = np.uint64(starts[0] + skip), np.uint64(starts[1] + skip), np.uint64(starts[2] + skip)
     wa, wb, wc = weight
-    to, length, keep = np.uint64(at), whole(count), np.float32(layer)
+    to, length, keep = np.uint64(at), in_blocks(count), np.float32(layer)
     if layer > 0 or wc > 0:
         for n in range(length):
             k = np.uint64(n)
@@ -101,7 +101,7 @@ def unroll(
     gain: float,
     start: int,
     texels: np.ndarray,
-    place: np.ndarray,
+    level_starts: np.ndarray,
     strip: np.ndarray,
 ) -> None:
     """Fill `strip` with the texture from texel up[0] to up[1], averaged along a stretch of wall (m).
@@ -115,7 +115,7 @@ def unroll(
     fade, length = fade_in(u1 - u0), 4 * (TILE[1] >> level)
     # Over less than one texel: linear interpolation.
     middle, half = 0.5 * (u0 + u1), min(max(0.5 * (u1 - u0), 0.5), 1.0)
-    base, across = start + place[fine, level], TILE[0] >> fine
+    base, across = start + level_starts[fine, level], TILE[0] >> fine
     starts, weight = _lie(middle, half, gain * (1.0 - fade), base, across, length)
     v, at = up[0], 0
     while v < up[1]:
@@ -123,7 +123,7 @@ def unroll(
         n = min(4 * (up[1] - v), length - skip)
         _blend(texels, starts, skip, weight, strip, at, n, 0)
         if fade > 0.0:  # before the next stretch, which overwrites what either layer leaves beyond this one
-            base = start + place[fine + 1, level]
+            base = start + level_starts[fine + 1, level]
             more, faint = _lie(0.5 * middle, max(0.5 * half, 0.5), gain * fade, base, across >> 1, length)
             _blend(texels, more, skip, faint, strip, at, n, 1)
         at += n
@@ -161,11 +161,11 @@ def paint_wall(
     v, step = up
     first = int(top)
     count = int(np.ceil(bottom)) - first
-    size, pace = np.float32(max(step, 1.0)), np.float32(step)
+    size, stride = np.float32(max(step, 1.0)), np.float32(step)
     low, share = np.float32(v - (first + 0.5) * step) - np.float32(0.5) * size, np.float32(weight) / size
     t, (a, b, c) = texel, mix
-    for k in range(whole(count)):
-        t[k], a[k], b[k], c[k] = _weigh(low - np.float32(k) * pace, size, share)
+    for k in range(in_blocks(count)):
+        t[k], a[k], b[k], c[k] = _weigh(low - np.float32(k) * stride, size, share)
     for k in (0, count - 1):  # these may be covered in part
         above, below = max(top, float(first + k)), min(bottom, first + k + 1.0)
         size = np.float32(max(step * (below - above), 1.0))
@@ -177,7 +177,7 @@ def paint_wall(
 
 @njit(cache=True, error_model="numpy")
 @typing.no_type_check
-def _paint_carpet(
+def _paint_textured_floor(
     top: float,
     bottom: float,
     weight: float,
@@ -185,7 +185,7 @@ def _paint_carpet(
     eye: tuple,
     lens: Lens,
     texels: np.ndarray,
-    place: np.ndarray,
+    level_starts: np.ndarray,
     column: np.ndarray,
 ) -> None:
     """Add the texture of the floor to the rows between two image heights.
@@ -211,7 +211,7 @@ def _paint_carpet(
             )
             i, j = int(np.floor(u)), int(np.floor(v))
             across, up = TILE[0] >> level + one, TILE[1] >> level + one
-            base = floor.start + place[level + one, level + one]
+            base = floor.start + level_starts[level + one, level + one]
             for p in range(2):
                 for q in range(2):
                     w = part * np.float32((u - i if p == 1 else i + 1 - u) * (v - j if q == 1 else j + 1 - v))
@@ -230,12 +230,12 @@ def paint_ground(
     eye: tuple,
     lens: Lens,
     texels: np.ndarray,
-    place: np.ndarray,
+    level_starts: np.ndarray,
     column: np.ndarray,
 ) -> None:
     """Add a level surface to the rows between two image heights."""
     if ground.start >= 0:
-        _paint_carpet(top, bottom, weight, ground, eye, lens, texels, place, column)
+        _paint_textured_floor(top, bottom, weight, ground, eye, lens, texels, level_starts, column)
         return
     for r in range(int(top), int(np.ceil(bottom))):
         share = np.float32(weight * (min(r + 1.0, bottom) - max(float(r), top)))

@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Float
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.rooms.arena import Arena
 
 
@@ -35,7 +35,7 @@ class Motion(Protocol):
         """How many `explore` takes unless told; None takes all there are."""
         ...
 
-    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
         """Move until this many views are taken.
 
         Raises

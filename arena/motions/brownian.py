@@ -6,9 +6,18 @@ from typing import ClassVar
 
 import numpy as np
 
-from arena.bodies.disc import Body, Drive, Pose
+from arena.bodies.disc import Disc, Drive, Pose
 from arena.motions.base import Walk
-from arena.motions.locomotion import STEP, Positive, Share, Spread, Way, look, random_start, turn_by
+from arena.motions.locomotion import (
+    STEP,
+    Positive,
+    Share,
+    Spread,
+    StepLength,
+    random_start,
+    sample_views,
+    turn_by,
+)
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 
@@ -23,8 +32,9 @@ class Brownian(Settings):
     The defaults fill place and heading evenly. `shyness` = 0 and `grazing` = 1 would be the cosine law, under
     which the runs alone do so for ever, as for a thin gas in a rough vessel; but the turns are seen too, all
     at the walls and most of them along the wall. Shyness spreads them over a band that the runs then visit
-    less, and a smaller `grazing` leaves out some runs along the wall. With a view after every `spacing` m or
-    `angle` rad, 17,000 views on 4×3 m fill 240 cells with a coefficient of variation of 0.21 to 0.26.
+    less, and a smaller `grazing` leaves out some runs along the wall. With a view after every
+    `view_every_m` m or `view_every_rad` rad, 17,000 views on 4×3 m fill 240 cells with a coefficient of
+    variation of 0.21 to 0.26.
 
     Parameters
     ----------
@@ -44,7 +54,7 @@ class Brownian(Settings):
         Largest sine of the angle at which the body leaves a wall.
     shyness
         Largest distance from the body's centre to what is straight ahead at which a run ends, m.
-    spacing, angle
+    view_every_m, view_every_rad
         A view is taken when the body has moved this far (m) or turned this much (rad) since the last.
     start
         First pose; drawn from free space when None.
@@ -72,11 +82,11 @@ class Brownian(Settings):
     spin_speed: Positive = 1.75
     grazing: Share = 0.7
     shyness: Spread = 0.8
-    spacing: Positive = 0.12
-    angle: Positive = 0.35
+    view_every_m: Positive = 0.12
+    view_every_rad: Positive = 0.35
     start: Pose | None = None
 
-    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
         """Wander until this many views are taken, the first at the start.
 
         Raises
@@ -85,10 +95,16 @@ class Brownian(Settings):
             When the body does not fit, or the start is not free.
         """
         drive = body.place(arena, self.start or random_start(arena, body, rng))
-        ways = self._steps(drive, body, rng)
-        return look(drive, ways, views or self.default_views, spacing=self.spacing, angle=self.angle)
+        steps = self._steps(drive, body, rng)
+        return sample_views(
+            drive,
+            steps,
+            views or self.default_views,
+            view_every_m=self.view_every_m,
+            view_every_rad=self.view_every_rad,
+        )
 
-    def _steps(self, drive: Drive, body: Body, rng: np.random.Generator) -> Iterator[Way]:
+    def _steps(self, drive: Drive, body: Disc, rng: np.random.Generator) -> Iterator[StepLength]:
         memory = math.exp(-STEP / self.wander_time)
         kick = self.wander * math.sqrt(1 - memory**2)
         rate = self.wander * rng.standard_normal()

@@ -7,10 +7,10 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
-from arena.bodies.disc import Body, Drive, Pose
+from arena.bodies.disc import Disc, Drive, Pose
 from arena.errors import ArenaError
 from arena.motions.base import Walk
-from arena.motions.locomotion import STEP, Positive, Way, look, random_start, turn_by
+from arena.motions.locomotion import STEP, Positive, StepLength, random_start, sample_views, turn_by
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 from arena.smell.odour import OdourField
@@ -42,9 +42,9 @@ class Chemotaxis(Settings):
         A climb ends when the strides are shorter, m.
     speed
         m/s.
-    pace
+    turn_rate
         Turn rate, rad/s.
-    spacing, angle
+    view_every_m, view_every_rad
         A view is taken when the body has moved this far (m) or turned this much (rad) since the last.
     start
         First pose; drawn from free space when None.
@@ -62,12 +62,12 @@ class Chemotaxis(Settings):
     stride: Positive = 0.2
     precision: Annotated[float, Field(ge=1e-4, le=1)] = 0.01
     speed: Positive = 0.4
-    pace: Positive = 1.75
-    spacing: Positive = 0.12
-    angle: Positive = 0.35
+    turn_rate: Positive = 1.75
+    view_every_m: Positive = 0.12
+    view_every_rad: Positive = 0.35
     start: Pose | None = None
 
-    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
         """Go and come back until this many views are taken, the first at the start.
 
         Raises
@@ -82,41 +82,54 @@ class Chemotaxis(Settings):
             )
         drive = body.place(arena, self.start or random_start(arena, body, rng))
         stays: list[tuple[float, int, int]] = []
-        ways = _counted(self._legs(drive, body, arena.odours, rng), stays)
-        walk = look(drive, ways, views or self.default_views, spacing=self.spacing, angle=self.angle)
+        steps = _counted(self._legs(drive, body, arena.odours, rng), stays)
+        walk = sample_views(
+            drive,
+            steps,
+            views or self.default_views,
+            view_every_m=self.view_every_m,
+            view_every_rad=self.view_every_rad,
+        )
         strength, first, last = np.reshape(stays, (-1, 3)).T
-        steps = np.rint(walk.times / STEP)
-        spans = np.stack([np.searchsorted(steps, first), np.searchsorted(steps, last, "right")], axis=1)
+        counts = np.rint(walk.times / STEP)
+        spans = np.stack([np.searchsorted(counts, first), np.searchsorted(counts, last, "right")], axis=1)
         return walk._replace(
             notes={"at_maximum": spans[strength > ENOUGH * strength.max(initial=0)].tolist()}
         )
 
     def _legs(
-        self, drive: Drive, body: Body, odours: OdourField, rng: np.random.Generator
-    ) -> Iterator[tuple[float | None, Iterator[Way]]]:
+        self, drive: Drive, body: Disc, odours: OdourField, rng: np.random.Generator
+    ) -> Iterator[tuple[float | None, Iterator[StepLength]]]:
         """Give the legs of the way, one by one, and how strong it smells where one is a stay at a maximum."""
-        pace, speed = min(self.pace, body.max_turn), min(self.speed, body.max_speed)
+        turn_rate, speed = min(self.turn_rate, body.max_turn), min(self.speed, body.max_speed)
         while True:
-            yield None, self._climb(drive, odours, pace, speed)
+            yield None, self._climb(drive, odours, turn_rate, speed)
             strength, _ = self._smell(drive, odours)
-            yield strength, turn_by(drive, rng.choice([-1, 1]) * (2 * math.pi + self.angle), pace)
-            yield None, self._go_away(drive, pace, speed, rng)
+            yield (
+                strength,
+                turn_by(drive, rng.choice([-1, 1]) * (2 * math.pi + self.view_every_rad), turn_rate),
+            )
+            yield None, self._go_away(drive, turn_rate, speed, rng)
 
-    def _climb(self, drive: Drive, odours: OdourField, pace: float, speed: float) -> Iterator[Way]:
+    def _climb(
+        self, drive: Drive, odours: OdourField, turn_rate: float, speed: float
+    ) -> Iterator[StepLength]:
         stride = self.stride
         strength, gradient = self._smell(drive, odours)
         while stride > self.precision:
             x, y, heading = drive.pose
-            yield from turn_by(drive, math.remainder(gradient - heading, 2 * math.pi), pace)
+            yield from turn_by(drive, math.remainder(gradient - heading, 2 * math.pi), turn_rate)
             yield from _run(drive, stride, speed, slide=True)
             before, (strength, gradient) = strength, self._smell(drive, odours)
             if strength <= before or math.dist((x, y), drive.pose[:2]) < 0.02 * stride:
                 stride *= 0.25
 
-    def _go_away(self, drive: Drive, pace: float, speed: float, rng: np.random.Generator) -> Iterator[Way]:
+    def _go_away(
+        self, drive: Drive, turn_rate: float, speed: float, rng: np.random.Generator
+    ) -> Iterator[StepLength]:
         left, angle = self.push * rng.uniform(0.5, 1.5), rng.uniform(-math.pi, math.pi)
         while left > 1e-9:
-            yield from turn_by(drive, angle, pace)
+            yield from turn_by(drive, angle, turn_rate)
             left = yield from _run(drive, left, speed, slide=False)
             away = drive.pose[2] if drive.contact is None else drive.contact
             angle = math.remainder(away + rng.uniform(-0.5, 0.5) * math.pi - drive.pose[2], 2 * math.pi)
@@ -128,7 +141,7 @@ class Chemotaxis(Settings):
         return odours.concentration(xy)[0, self.odorant].item(), math.atan2(climb, rise)
 
 
-def _run(drive: Drive, length: float, speed: float, *, slide: bool) -> Generator[Way, None, float]:
+def _run(drive: Drive, length: float, speed: float, *, slide: bool) -> Generator[StepLength, None, float]:
     """Go straight ahead for a length (m), sliding along walls or stopping there; give what is left of it."""
     while length > 1e-9 and (slide or drive.contact is None):
         drive.step(min(speed, length / STEP), 0.0, STEP)
@@ -138,8 +151,8 @@ def _run(drive: Drive, length: float, speed: float, *, slide: bool) -> Generator
 
 
 def _counted(
-    legs: Iterator[tuple[float | None, Iterator[Way]]], stays: list[tuple[float, int, int]]
-) -> Iterator[Way]:
+    legs: Iterator[tuple[float | None, Iterator[StepLength]]], stays: list[tuple[float, int, int]]
+) -> Iterator[StepLength]:
     """Join legs; note of every stay how strong it smells and the steps between which it lasts."""
     step = 0
     for strength, leg in legs:

@@ -6,9 +6,9 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from arena.bodies.disc import TOLERANCE, Body
+from arena.bodies.disc import TOLERANCE, Disc
 from arena.errors import ArenaError
-from arena.motions.locomotion import Place, free_space
+from arena.motions.locomotion import Point, free_space
 from arena.rooms.arena import Arena
 
 _LINES = 161
@@ -16,8 +16,8 @@ _NARROW = 1e-3
 
 
 def corridor(
-    arena: Arena, body: Body, room: float, ends: tuple[Place, Place] | None
-) -> tuple[Place, Place, float]:
+    arena: Arena, body: Disc, room: float, ends: tuple[Point, Point] | None
+) -> tuple[Point, Point, float]:
     """Find a straight way between two ends (m) with room (m) on either side for the body.
 
     Parameters
@@ -53,7 +53,7 @@ def corridor(
         room = room / 2 if room > _NARROW else 0.0
 
 
-def _longest(region: BaseGeometry, platform: tuple[tuple[Place, ...], ...]) -> tuple[Place, Place] | None:
+def _longest(region: BaseGeometry, platform: tuple[tuple[Point, ...], ...]) -> tuple[Point, Point] | None:
     if region.area < 1e-6:
         return None
     sides = np.concatenate([np.roll(corners, -1, axis=0) - corners for corners in map(np.array, platform)])

@@ -7,10 +7,19 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
-from arena.bodies.disc import Body, Drive
+from arena.bodies.disc import Disc, Drive
 from arena.motions.base import Walk
 from arena.motions.corridor import corridor
-from arena.motions.locomotion import Place, Positive, Spread, Way, bearing, go_to, look, turn_by
+from arena.motions.locomotion import (
+    Point,
+    Positive,
+    Spread,
+    StepLength,
+    bearing,
+    go_to,
+    sample_views,
+    turn_by,
+)
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 
@@ -35,9 +44,9 @@ class Cyclic(Settings):
         How often to go along the way.
     speed
         m/s.
-    pace
+    turn_rate
         Turn rate, rad/s.
-    spacing, angle
+    view_every_m, view_every_rad
         A view is taken when the body has moved this far (m) or turned this much (rad) since the last.
 
     Raises
@@ -48,15 +57,15 @@ class Cyclic(Settings):
 
     default_views: ClassVar[int] = 4_000
 
-    ends: tuple[Place, Place] | None = None
+    ends: tuple[Point, Point] | None = None
     width: Spread = 0.1
     passes: Annotated[int, Field(ge=1, le=1000)] = 3
     speed: Positive = 0.4
-    pace: Positive = 1.75
-    spacing: Positive = 0.12
-    angle: Positive = 0.175
+    turn_rate: Positive = 1.75
+    view_every_m: Positive = 0.12
+    view_every_rad: Positive = 0.175
 
-    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
         """Go to and fro until this many views are taken, the first at the first end.
 
         Raises
@@ -67,13 +76,15 @@ class Cyclic(Settings):
         views = views or self.default_views
         start, end, room = corridor(arena, body, self.width / 2, self.ends)
         drive = body.place(arena, (*start, rng.uniform(-np.pi, np.pi)))
-        spins = max(1, round(views * self.angle / (2 * np.pi + FACING) / self.passes))
-        ways = self._zigzag(drive, body, self._corners(start, end, room, spins, rng))
-        return look(drive, ways, views, spacing=self.spacing, angle=self.angle)
+        spins = max(1, round(views * self.view_every_rad / (2 * np.pi + FACING) / self.passes))
+        steps = self._zigzag(drive, body, self._corners(start, end, room, spins, rng))
+        return sample_views(
+            drive, steps, views, view_every_m=self.view_every_m, view_every_rad=self.view_every_rad
+        )
 
     def _corners(
-        self, start: Place, end: Place, room: float, spins: int, rng: np.random.Generator
-    ) -> Iterator[Place]:
+        self, start: Point, end: Point, room: float, spins: int, rng: np.random.Generator
+    ) -> Iterator[Point]:
         along = np.subtract(end, start)
         across = np.array([-along[1], along[0]]) / np.hypot(*along)
         while True:
@@ -83,9 +94,9 @@ class Cyclic(Settings):
                     x, y = start + share * along + side * across
                     yield float(x), float(y)
 
-    def _zigzag(self, drive: Drive, body: Body, corners: Iterator[Place]) -> Iterator[Way]:
-        pace, speed = min(self.pace, body.max_turn), min(self.speed, body.max_speed)
+    def _zigzag(self, drive: Drive, body: Disc, corners: Iterator[Point]) -> Iterator[StepLength]:
+        turn_rate, speed = min(self.turn_rate, body.max_turn), min(self.speed, body.max_speed)
         for corner in corners:
             face = bearing(drive.pose, corner)
-            yield from turn_by(drive, face + math.copysign(2 * math.pi, face), pace)
+            yield from turn_by(drive, face + math.copysign(2 * math.pi, face), turn_rate)
             yield from go_to(drive, corner, speed)

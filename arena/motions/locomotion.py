@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 from shapely.geometry.base import BaseGeometry
 
-from arena.bodies.disc import Body, Drive, Pose
+from arena.bodies.disc import Disc, Drive, Pose
 from arena.errors import ArenaError
 from arena.motions.base import Walk
 from arena.rooms.arena import Arena
@@ -18,10 +18,10 @@ STEP = 0.05
 STEER = 2.0
 """Turn rate per error of heading, 1/s: so slow that a body that misses its goal passes it, not orbits it."""
 
-Place = tuple[float, float]
+Point = tuple[float, float]
 """x and y in m."""
 
-Way = tuple[float, float]
+StepLength = tuple[float, float]
 """How far a step went (m) and turned (rad), neither negative."""
 
 Positive = Annotated[float, Field(ge=0.01, le=100)]
@@ -29,14 +29,16 @@ Spread = Annotated[float, Field(ge=0, le=100)]
 Share = Annotated[float, Field(ge=0, le=1)]
 
 
-def look(drive: Drive, ways: Iterator[Way], views: int, *, spacing: float, angle: float) -> Walk:
-    """Take a view at the start and after every `spacing` m or `angle` rad, whichever comes first.
+def sample_views(
+    drive: Drive, steps: Iterator[StepLength], views: int, *, view_every_m: float, view_every_rad: float
+) -> Walk:
+    """Take a view at the start and after every `view_every_m` or `view_every_rad`, whichever comes first.
 
     Parameters
     ----------
     drive
         The body.
-    ways
+    steps
         Makes the drive step by `STEP`, for ever, and tells how far.
     views
         How many to take.
@@ -44,22 +46,22 @@ def look(drive: Drive, ways: Iterator[Way], views: int, *, spacing: float, angle
     times, poses = np.zeros(views), np.empty((views, 3))
     poses[0] = drive.pose
     seen, gone, turned = 1, 0.0, 0.0
-    for now, (way, turn) in enumerate(ways, start=1):
+    for now, (way, turn) in enumerate(steps, start=1):
         if seen == views:
             break
         gone += way
         turned += turn
-        if gone >= spacing or turned >= angle:
+        if gone >= view_every_m or turned >= view_every_rad:
             times[seen], poses[seen] = now * STEP, drive.pose
             seen, gone, turned = seen + 1, 0.0, 0.0
     return Walk(times, poses)
 
 
-def turn_by(drive: Drive, angle: float, pace: float) -> Iterator[Way]:
-    """Turn on the spot by an angle (rad) at a pace (rad/s) that the body can keep."""
-    pace *= STEP
+def turn_by(drive: Drive, angle: float, turn_rate: float) -> Iterator[StepLength]:
+    """Turn on the spot by an angle (rad) at a turn rate (rad/s) that the body can keep."""
+    turn_rate *= STEP
     while angle:
-        turn = math.copysign(min(abs(angle), pace), angle)
+        turn = math.copysign(min(abs(angle), turn_rate), angle)
         drive.step(0.0, turn / STEP, STEP)
         yield 0.0, abs(turn)
         angle -= turn
@@ -67,13 +69,13 @@ def turn_by(drive: Drive, angle: float, pace: float) -> Iterator[Way]:
     yield from _rest(drive)
 
 
-def bearing(pose: Pose, goal: Place) -> float:
+def bearing(pose: Pose, goal: Point) -> float:
     """By how much to turn (rad, the short way) to face a goal (m)."""
     x, y, heading = pose
     return math.remainder(math.atan2(goal[1] - y, goal[0] - x) - heading, 2 * math.pi)
 
 
-def go_to(drive: Drive, goal: Place, speed: float) -> Iterator[Way]:
+def go_to(drive: Drive, goal: Point, speed: float) -> Iterator[StepLength]:
     """Go to a goal (m) straight ahead at a speed (m/s), until there, past it, or something is hit."""
     braking = 2 * (drive.body.max_acceleration or math.inf)
     while True:
@@ -86,7 +88,7 @@ def go_to(drive: Drive, goal: Place, speed: float) -> Iterator[Way]:
     yield from _rest(drive)
 
 
-def _rest(drive: Drive) -> Iterator[Way]:
+def _rest(drive: Drive) -> Iterator[StepLength]:
     """Let a body that cannot stop at once come to rest."""
     body = drive.body
     while (body.max_acceleration and drive.speed) or (body.max_turn_acceleration and drive.turn):
@@ -94,7 +96,7 @@ def _rest(drive: Drive) -> Iterator[Way]:
         yield drive.speed * STEP, abs(drive.turn) * STEP
 
 
-def free_space(arena: Arena, body: Body) -> BaseGeometry:
+def free_space(arena: Arena, body: Disc) -> BaseGeometry:
     """Give the places of the body's centre.
 
     Raises
@@ -111,7 +113,7 @@ def free_space(arena: Arena, body: Body) -> BaseGeometry:
     return region
 
 
-def random_start(arena: Arena, body: Body, rng: np.random.Generator) -> Pose:
+def random_start(arena: Arena, body: Disc, rng: np.random.Generator) -> Pose:
     """Draw a pose from free space.
 
     Raises

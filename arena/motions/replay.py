@@ -9,10 +9,10 @@ from jaxtyping import Float, Int
 from pydantic import Field, PlainSerializer, model_validator
 from shapely.geometry.base import BaseGeometry
 
-from arena.bodies.disc import TOLERANCE, Body
+from arena.bodies.disc import TOLERANCE, Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
-from arena.motions.locomotion import Place, free_space
+from arena.motions.locomotion import Point, free_space
 from arena.motions.paths import RecordedPath, read_path
 from arena.rooms.arena import Arena
 from arena.settings import Settings
@@ -45,8 +45,9 @@ class Replay(Settings):
         Scale and move the path so that it just fits the box around the body's free space.
     clip
         Move positions that are not free to the nearest that is; else they are an error.
-    interval, spacing
-        A view is taken at the first sample in every `interval` s, or after every `spacing` m of the path; at
+    interval, view_every_m
+        A view is taken at the first sample in every `interval` s, or after every `view_every_m` m of the
+        path; at
         every sample when both are None.
     smoothing
         Time over which the direction of motion is taken, s.
@@ -63,23 +64,23 @@ class Replay(Settings):
 
     path: Annotated[Path, PlainSerializer(str)]
     scale: _Above = 1.0
-    offset: Place = (0.0, 0.0)
+    offset: Point = (0.0, 0.0)
     fit: bool = False
     clip: bool = False
     interval: _Above | None = None
-    spacing: _Above | None = None
+    view_every_m: _Above | None = None
     smoothing: _Above = 0.25
     still: Annotated[float, Field(ge=0, le=100)] = 0.02
 
     @model_validator(mode="after")
     def _agree(self) -> "Replay":
-        if self.interval is not None and self.spacing is not None:
-            raise ValueError("both interval and spacing are given; choose one")
+        if self.interval is not None and self.view_every_m is not None:
+            raise ValueError("both interval and view_every_m are given; choose one")
         if self.fit and (self.scale, self.offset) != (1.0, (0.0, 0.0)):
             raise ValueError("fit finds scale and offset itself; leave them out")
         return self
 
-    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:  # noqa: ARG002
+    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:  # noqa: ARG002
         """Follow the path, for this many views if told; nothing is random.
 
         Raises
@@ -137,9 +138,9 @@ class Replay(Settings):
         """Say at which samples views are taken."""
         if self.interval is not None:
             gone, every = times - times[0], self.interval
-        elif self.spacing is not None:
+        elif self.view_every_m is not None:
             gone = np.insert(np.cumsum(np.hypot(*np.diff(positions, axis=0).T)), 0, 0.0)
-            every = self.spacing
+            every = self.view_every_m
         else:
             return np.arange(len(times))
         # Rounding must not put a sample that is due into the interval before.
@@ -148,7 +149,7 @@ class Replay(Settings):
     def _kept(
         self,
         arena: Arena,
-        body: Body,
+        body: Disc,
         times: Float[np.ndarray, " samples"],
         positions: Float[np.ndarray, "samples 2"],
     ) -> tuple[Float[np.ndarray, "samples 2"], int]:

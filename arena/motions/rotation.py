@@ -7,9 +7,9 @@ import numpy as np
 import shapely
 from pydantic import Field
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.motions.base import Walk
-from arena.motions.locomotion import STEP, Place, Positive, Share, free_space
+from arena.motions.locomotion import STEP, Point, Positive, Share, free_space
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 
@@ -30,7 +30,7 @@ class Rotation(Settings):
     jitter
         j. 0 spaces the headings evenly, so that turns repeat them where T and n have a common divisor; 1 puts
         each anywhere in its own n-th of the way.
-    pace
+    turn_rate
         Turn rate, rad/s.
 
     Raises
@@ -41,12 +41,12 @@ class Rotation(Settings):
 
     default_views: ClassVar[int] = 5_000
 
-    position: Place | None = None
+    position: Point | None = None
     turns: Annotated[int, Field(ge=1, le=10_000)] = 10
     jitter: Share = 1.0
-    pace: Positive = 1.75
+    turn_rate: Positive = 1.75
 
-    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
         """Turn until this many views are taken.
 
         Raises
@@ -58,20 +58,20 @@ class Rotation(Settings):
         x, y = self.position or _middle(arena, body)
         drive = body.place(arena, (x, y, rng.uniform(-np.pi, np.pi)))
         goals = 2 * np.pi * self.turns * (np.arange(views) + self.jitter * rng.random(views)) / views
-        pace = min(self.pace, body.max_turn)
+        turn_rate = min(self.turn_rate, body.max_turn)
         times, poses = np.empty(views), np.empty((views, 3))
         now = turned = 0.0
         for view, goal in enumerate(goals.tolist()):
             # More than one step where the body first has to speed up.
             while goal - turned > 1e-9:
-                before, dt = drive.pose[2], min(STEP, 1 / pace, (goal - turned) / pace)
-                drive.step(0.0, pace, dt)
+                before, dt = drive.pose[2], min(STEP, 1 / turn_rate, (goal - turned) / turn_rate)
+                drive.step(0.0, turn_rate, dt)
                 turned += math.remainder(drive.pose[2] - before, 2 * math.pi)
                 now += dt
             times[view], poses[view] = now, drive.pose
         return Walk(times, poses)
 
 
-def _middle(arena: Arena, body: Body) -> Place:
+def _middle(arena: Arena, body: Disc) -> Point:
     nearest = shapely.shortest_line(free_space(arena, body), arena.walkable.centroid).coords[0]
     return nearest[0], nearest[1]

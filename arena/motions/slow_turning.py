@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.motions.base import Walk
 from arena.motions.brownian import Brownian
 from arena.motions.locomotion import Positive, Spread
@@ -24,7 +24,7 @@ class SlowTurning(Settings):
     ----------
     turn
         Standard deviation of the change of heading from view to view, rad.
-    spacing
+    view_every_m
         Way from view to view, m.
 
     Raises
@@ -36,9 +36,9 @@ class SlowTurning(Settings):
     default_views: ClassVar[int] = 17_000
 
     turn: Spread = 0.05
-    spacing: Positive = 1.0
+    view_every_m: Positive = 1.0
 
-    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
         """Wander until this many views are taken.
 
         Raises
@@ -47,6 +47,6 @@ class SlowTurning(Settings):
             When the body does not fit.
         """
         # Looking around takes no views of its own.
-        way = Brownian(spacing=self.spacing, angle=100.0).walk(arena, body, views, rng)
+        way = Brownian(view_every_m=self.view_every_m, view_every_rad=100.0).walk(arena, body, views, rng)
         gaze = way.poses[0, 2] + np.cumsum(self.turn * rng.standard_normal(len(way.poses)))
         return way._replace(poses=np.column_stack([way.poses[:, :2], np.pi - (np.pi - gaze) % (2 * np.pi)]))

@@ -6,10 +6,19 @@ from typing import ClassVar
 
 import numpy as np
 
-from arena.bodies.disc import Body, Drive
+from arena.bodies.disc import Disc, Drive
 from arena.motions.base import Walk
 from arena.motions.corridor import corridor
-from arena.motions.locomotion import Place, Positive, Spread, Way, bearing, go_to, look, turn_by
+from arena.motions.locomotion import (
+    Point,
+    Positive,
+    Spread,
+    StepLength,
+    bearing,
+    go_to,
+    sample_views,
+    turn_by,
+)
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 
@@ -20,7 +29,7 @@ ROOM = 0.02
 class Track(Settings):
     """Runs straight from one end to the other and back, with a turn to either side at random at each end.
 
-    The speed varies from run to run, and where it ends by `spacing`, so that no two runs see the same.
+    The speed varies from run to run, and where it ends by `view_every_m`, so that no two runs see the same.
 
     Parameters
     ----------
@@ -28,9 +37,9 @@ class Track(Settings):
         Two points, m; those of the longest straight way in the room when None.
     speed, speed_spread
         Mean and standard deviation over runs, m/s.
-    pace
+    turn_rate
         Turn rate at the ends, rad/s.
-    spacing, angle
+    view_every_m, view_every_rad
         A view is taken when the body has moved this far (m) or turned this much (rad) since the last.
 
     Raises
@@ -41,14 +50,14 @@ class Track(Settings):
 
     default_views: ClassVar[int] = 2_000
 
-    ends: tuple[Place, Place] | None = None
+    ends: tuple[Point, Point] | None = None
     speed: Positive = 0.4
     speed_spread: Spread = 0.1
-    pace: Positive = 1.75
-    spacing: Positive = 0.12
-    angle: Positive = 0.35
+    turn_rate: Positive = 1.75
+    view_every_m: Positive = 0.12
+    view_every_rad: Positive = 0.35
 
-    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
         """Go to and fro until this many views are taken, the first at the first end.
 
         Raises
@@ -58,18 +67,26 @@ class Track(Settings):
         """
         here, there, _ = corridor(arena, body, ROOM, self.ends)
         drive = body.place(arena, (*here, math.atan2(there[1] - here[1], there[0] - here[0])))
-        ways = self._runs(drive, body, (here, there), rng)
-        return look(drive, ways, views or self.default_views, spacing=self.spacing, angle=self.angle)
+        steps = self._runs(drive, body, (here, there), rng)
+        return sample_views(
+            drive,
+            steps,
+            views or self.default_views,
+            view_every_m=self.view_every_m,
+            view_every_rad=self.view_every_rad,
+        )
 
     def _runs(
-        self, drive: Drive, body: Body, ends: tuple[Place, Place], rng: np.random.Generator
-    ) -> Iterator[Way]:
+        self, drive: Drive, body: Disc, ends: tuple[Point, Point], rng: np.random.Generator
+    ) -> Iterator[StepLength]:
         here, there = ends
         while True:
             speed = min(body.max_speed, max(0.2 * self.speed, rng.normal(self.speed, self.speed_spread)))
-            short = rng.random() * min(0.5, self.spacing / math.dist(here, there))
+            short = rng.random() * min(0.5, self.view_every_m / math.dist(here, there))
             x, y = (b + short * (a - b) for a, b in zip(here, there, strict=True))
             yield from go_to(drive, (x, y), speed)
             here, there = there, here
             back, side = bearing(drive.pose, there), rng.choice([-1, 1])
-            yield from turn_by(drive, side * (side * back % (2 * math.pi)), min(self.pace, body.max_turn))
+            yield from turn_by(
+                drive, side * (side * back % (2 * math.pi)), min(self.turn_rate, body.max_turn)
+            )

@@ -38,7 +38,7 @@ def file(folder: Path, rows: slice) -> Path:
     return folder / "c" / str(rows.start // SHARD) / "0" / "0" / "0"
 
 
-def is_whole(path: Path, count: int) -> bool:
+def is_complete(path: Path, count: int) -> bool:
     """Whether a shard of this many images is there, to its last byte."""
     if not path.is_file() or path.stat().st_size < _INDEX_BYTES:
         return False
@@ -50,7 +50,7 @@ def is_whole(path: Path, count: int) -> bool:
 
 
 class Writer:
-    """Puts images into the folder of an array, a shard at a time; `writing` makes one.
+    """Puts images into the folder of an array, a shard at a time; `shard_writer` makes one.
 
     `writer[rows] = images` compresses and writes a shard while the next one is made; `rows` come from
     `shards`. The file takes its name when it is whole.
@@ -72,7 +72,7 @@ class Writer:
 
 
 @contextmanager
-def writing(folder: Path) -> Iterator[Writer]:
+def shard_writer(folder: Path) -> Iterator[Writer]:
     """Write images into the folder of an array.
 
     Raises

@@ -12,7 +12,7 @@ import zarr
 from jaxtyping import Int, UInt8
 
 from arena.errors import ArenaError
-from arena.recordings.sharding import SHARD, Writer, codec, file, is_whole, shards, writing
+from arena.recordings.sharding import SHARD, Writer, codec, file, is_complete, shard_writer, shards
 
 VERSION = 2
 """Of the layout."""
@@ -71,10 +71,10 @@ def lay_out(
 
 @contextmanager
 def writable_views(path: Path) -> Iterator[Writer]:
-    """Write shards of views, after clearing away what a kill has left of one; see `sharding.writing`."""
+    """Write shards of views, after clearing away what a kill has left of one; see `sharding.shard_writer`."""
     for stray in (path / "views").rglob("*.partial"):
         stray.unlink()
-    with writing(path / "views") as writer:
+    with shard_writer(path / "views") as writer:
         yield writer
 
 
@@ -110,7 +110,7 @@ def load(path: Path) -> Stored:
         missing = [
             rows
             for rows in shards(views.shape[0])
-            if not is_whole(file(path / "views", rows), rows.stop - rows.start)
+            if not is_complete(file(path / "views", rows), rows.stop - rows.start)
         ]
     except _DAMAGE as error:
         raise ArenaError(f"{path} is damaged ({_first_line(error)}); record it again") from None

@@ -21,10 +21,10 @@ from typing_extensions import TypeAliasType
 from arena.errors import ArenaError
 from arena.eye.scene import Scene, scene
 from arena.rooms.light import Light
-from arena.rooms.parts import Block, Box, Length, Material, Part, Pillar, Polygon, Solid, Source, Wall
+from arena.rooms.parts import Block, Box, FrozenModel, Length, Material, Pillar, Polygon, Solid, Source, Wall
 from arena.rooms.schema import schema
 from arena.rooms.surfaces import Surfaces, surfaces
-from arena.settings import complaint
+from arena.settings import first_error
 from arena.smell.odour import OdourField
 
 CLEARANCE = 0.01
@@ -42,7 +42,7 @@ def _kind_of_floor(floor: object) -> str:
     return "<material>" if isinstance(floor, str) else "<colour>"
 
 
-class Arena(Part):
+class Arena(FrozenModel):
     """A room to explore, as in a TOML file; `load`, `parse` and `create` make one."""
 
     name: Annotated[str, Field(min_length=1)]
@@ -98,7 +98,7 @@ class Arena(Part):
         try:
             return cls.model_validate(fields)
         except ValidationError as error:
-            raise ArenaError(complaint(error)) from None
+            raise ArenaError(first_error(error)) from None
 
     @classmethod
     def parse(cls, text: str) -> Arena:

@@ -8,10 +8,10 @@ import numpy as np
 from jaxtyping import Float
 from pydantic import Field
 
-from arena.rooms.parts import Angle, Part
+from arena.rooms.parts import Angle, FrozenModel
 
 
-class Light(Part):
+class Light(FrozenModel):
     r"""A far lamp over ambient light; it casts no shadows.
 
     .. math:: (1 - s) + s \max(0, n \cdot l)

@@ -27,15 +27,16 @@ Texture = UInt8[np.ndarray, "along up 3"]
 _Tint = tuple[int, int, int]
 
 
-class Weave(NamedTuple):
+class MipMaps(NamedTuple):
     """The textures of a room at every pair of resolutions.
 
     At levels (i, j) a texel is 2^i texels long and 2^j texels high. Those of material m start at
-    `texels[m, place[i, j]]`: first along the wall, then up the wall, red green blue and a spare byte each.
+    `texels[m, level_starts[i, j]]`: first along the wall, then up the wall, red green blue and a spare byte
+    each.
     """
 
     texels: UInt8[np.ndarray, "materials bytes"]
-    place: Int[np.ndarray, "levels_along levels_up"]
+    level_starts: Int[np.ndarray, "levels_along levels_up"]
 
 
 def _cloud(rng: np.random.Generator, along: float, up: float) -> Float[np.ndarray, "along up"]:
@@ -208,14 +209,14 @@ def texture(name: str) -> Texture:
 
 
 @lru_cache(maxsize=ROOMS)
-def weave(names: tuple[str, ...]) -> Weave:
+def mip_maps(names: tuple[str, ...]) -> MipMaps:
     """Average the named materials for the ray caster."""
-    woven = [_weave(name) for name in names]
-    return Weave(np.stack([texels for texels, _ in woven]), woven[0][1])
+    woven = [_mip_maps_of(name) for name in names]
+    return MipMaps(np.stack([texels for texels, _ in woven]), woven[0][1])
 
 
 @cache
-def _weave(name: str) -> tuple[UInt8[np.ndarray, "bytes"], Int[np.ndarray, "levels_along levels_up"]]:
+def _mip_maps_of(name: str) -> tuple[UInt8[np.ndarray, "bytes"], Int[np.ndarray, "levels_along levels_up"]]:
     along = np.zeros((*TILE, 4))
     along[..., :3] = texture(name)
     blocks, sizes = [], np.empty(LEVELS, dtype=np.int64)
@@ -230,7 +231,7 @@ def _weave(name: str) -> tuple[UInt8[np.ndarray, "bytes"], Int[np.ndarray, "leve
 
 
 @cache
-def tint(name: str) -> Float32[np.ndarray, "3"]:
+def mean_colour(name: str) -> Float32[np.ndarray, "3"]:
     """Average the colour of a material over its tile, 0..255."""
     mean: np.ndarray = texture(name).mean(axis=(0, 1))
     return mean.astype(np.float32)

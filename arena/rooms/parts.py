@@ -51,13 +51,13 @@ def _number_of_names(material: object) -> str:
     return "<one>" if isinstance(material, str) else "<each>"
 
 
-class Part(BaseModel):
+class FrozenModel(BaseModel):
     """A frozen value that knows no other fields than its own."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
 
-class Wall(Part):
+class Wall(FrozenModel):
     """A thin vertical wall, seen from both sides."""
 
     start: Point
@@ -76,7 +76,7 @@ class Wall(Part):
         return self
 
 
-class Box(Part):
+class Box(FrozenModel):
     """A solid box."""
 
     center: Point
@@ -109,7 +109,7 @@ class Box(Part):
         return (self.material,) * 4 if isinstance(self.material, str) else self.material
 
 
-class Pillar(Part):
+class Pillar(FrozenModel):
     """A solid round pillar."""
 
     center: Point
@@ -133,7 +133,7 @@ class Pillar(Part):
         return (self.material,) * PILLAR_SIDES
 
 
-class Block(Part):
+class Block(FrozenModel):
     """A solid prism on any simple polygon, which need not be convex."""
 
     corners: Polygon
@@ -176,7 +176,7 @@ class Block(Part):
 Solid = Box | Pillar | Block
 
 
-class Source(Part):
+class Source(FrozenModel):
     """A point source of one odour."""
 
     position: Point

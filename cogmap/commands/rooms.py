@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 from cyclopts import Parameter
 
-from arena import Arena, Body, Camera, Nose, explore, gallery
+from arena import Arena, Camera, Disc, Nose, explore, gallery
 from arena.motions.catalogue import MOTIONS
 from cogmap.atomic import check_absent
 from cogmap.commands.app import Json, Seed, app, save_figure, tell
@@ -55,7 +55,7 @@ def _arena(
         "pillars": len(room.pillars),
         "blocks": len(room.blocks),
         "odour_sources": len(room.sources),
-        "free_area_m2": float(room.free_space(Body().radius).area),
+        "free_area_m2": float(room.free_space(Disc().radius).area),
     }
     for path, plot in ((out, plot_room), (sheet, plot_sheet)):
         if path is not None:

@@ -11,7 +11,7 @@ import pandas as pd
 import torch
 from jaxtyping import Float
 
-from arena import Arena, Body, Recording
+from arena import Arena, Disc, Recording
 from cogmap.cells import (
     RateMaps,
     Tuning,
@@ -89,7 +89,7 @@ class Ground(NamedTuple):
         cls, room: Arena, known: Float[np.ndarray, "train 3"], poses: Float[np.ndarray, "views 3"]
     ) -> Ground:
         """Take all of the room as within reach."""
-        return cls(known, poses, room.sample_free(20_000, Body().radius, np.random.default_rng(0)))
+        return cls(known, poses, room.sample_free(20_000, Disc().radius, np.random.default_rng(0)))
 
     def maps(self, rates: Float[np.ndarray, "views cells"]) -> RateMaps:
         """Rate maps on bins that all populations share; a cell without a compass, of rate NaN, is silent."""

@@ -13,13 +13,13 @@ import numpy as np
 from filelock import FileLock
 from jaxtyping import Float
 
-from arena import Arena, Body, Camera, Motion, Nose, Recording, explore
+from arena import Arena, Camera, Disc, Motion, Nose, Recording, explore
 
 FRESH = 5000
 """Views of a fresh walk, or as many as were learnt from when these are fewer."""
 FRESH_SEED = 1000
 """Added to the seed for a fresh walk, on which what was learnt is scored."""
-_BODY = Body()
+_BODY = Disc()
 _NOSE = Nose()
 
 
@@ -54,7 +54,7 @@ class Setting:
         motion: Motion,
         camera: Camera,
         *,
-        body: Body = _BODY,
+        body: Disc = _BODY,
         views: int | None = None,
         fresh: bool = False,
     ) -> Recording:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
-from arena import Arena, Body, Brownian, Camera, Recording, explore
+from arena import Arena, Brownian, Camera, Disc, Recording, explore
 from cogmap.atomic import METRICS, result_folder
 from cogmap.cells import (
     fit_heading_frame,
@@ -165,7 +165,7 @@ def demo(
 
 def _score(room: Arena, learnt: Outing, fresh: Outing) -> dict[str, float]:
     """Every figure of `score`, and the position error of the raw nose read by the same decoder."""
-    reachable = room.sample_free(20_000, Body().radius, np.random.default_rng(0))
+    reachable = room.sample_free(20_000, Disc().radius, np.random.default_rng(0))
     raw = position_errors(
         np.log(learnt.walk.odours), learnt.poses[:, :2], np.log(fresh.walk.odours), fresh.poses[:, :2]
     )

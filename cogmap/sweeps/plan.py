@@ -14,8 +14,8 @@ import numpy as np
 import tomli_w
 from pydantic import Field, ValidationError
 
-from arena.rooms.parts import Part
-from arena.settings import complaint
+from arena.rooms.parts import FrozenModel
+from arena.settings import first_error
 from cogmap.errors import CogmapError
 from cogmap.sweeps.sampling import Sample
 
@@ -30,7 +30,7 @@ class Choice(NamedTuple):
     value: Any
 
 
-class Plan(Part):
+class Plan(FrozenModel):
     """An experiment, and at which points and seeds it is done; `load`, `parse` and `create` make one.
 
     Exactly one of `grid`, `points` and `sample` says what is varied. Parameters are `views`, `arena` (a room
@@ -62,7 +62,7 @@ class Plan(Part):
         try:
             plan = cls.model_validate(fields)
         except ValidationError as error:
-            raise CogmapError(f"the sweep's {complaint(error)}") from None
+            raise CogmapError(f"the sweep's {first_error(error)}") from None
         plan.check()
         return plan
 

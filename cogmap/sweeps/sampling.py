@@ -9,14 +9,14 @@ import numpy as np
 from pydantic import Field
 from scipy.stats import qmc
 
-from arena.rooms.parts import Part
+from arena.rooms.parts import FrozenModel
 from cogmap.errors import CogmapError
 
 MOST = 2**16
 """Points of one sample."""
 
 
-class Range(Part):
+class Range(FrozenModel):
     """Where a parameter lies; both ends are reached by whole numbers only."""
 
     low: Annotated[float, Field(allow_inf_nan=False)]
@@ -49,7 +49,7 @@ class Range(Part):
             )
 
 
-class Sample(Part):
+class Sample(FrozenModel):
     """How many points are drawn, and from where."""
 
     points: Annotated[int, Field(strict=True, ge=1, le=MOST)]

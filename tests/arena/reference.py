@@ -150,8 +150,8 @@ def paint_samples(
         facing = left if left[:2] @ (pose[:2] - start) > 0 else -left
         colour[met] = _lit(arena, facing) * sampler(faces.materials[faces.material[f]], u[met], z[met])
     for s, solid in enumerate(arena.solids):
-        lid = np.mean([texture(side).mean(axis=(0, 1)) for side in solid.sides], axis=0)
-        colour[index == len(faces.height) + s] = above * lid
+        top_colour = np.mean([texture(side).mean(axis=(0, 1)) for side in solid.sides], axis=0)
+        colour[index == len(faces.height) + s] = above * top_colour
     return colour.reshape(camera.height, samples, camera.width, samples, 3)
 
 

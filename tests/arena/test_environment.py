@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.environment import Explorer, Observation, OdourClimbed
 from arena.errors import ArenaError
 from arena.eye.camera import Camera
@@ -104,7 +104,7 @@ def test_smell_is_that_of_the_nose_along_the_way() -> None:
 
 
 def test_velocity_is_in_units_of_what_the_body_can_do() -> None:
-    body = Body(max_speed=0.5, max_turn=2.0)
+    body = Disc(max_speed=0.5, max_turn=2.0)
     env = make(body=body, dt=0.1)
     env.reset(options={"pose": (0, 0, 0)})
     *_, info = env.step(FORWARD)
@@ -122,7 +122,7 @@ def test_wheels_roll_along_the_arc_that_they_span() -> None:
     left, right = 0.3, 0.4
     for _ in range(50):
         *_, info = env.step(np.array([left, right]))
-    angle = 0.65 * (right - left) / Body().wheel_base
+    angle = 0.65 * (right - left) / Disc().wheel_base
     radius = 0.65 * (left + right) / 2 / angle
     wanted = radius * np.sin(angle), radius * (1 - np.cos(angle)), angle
     np.testing.assert_allclose(info["pose"], wanted, atol=1e-4)
@@ -197,7 +197,7 @@ def test_episode_does_not_depend_on_those_before() -> None:
 
 
 def test_starts_fill_free_space() -> None:
-    env = make("pillar", body=Body(radius=0.3))
+    env = make("pillar", body=Disc(radius=0.3))
     poses = np.array([env.reset(seed=seed)[1]["pose"] for seed in range(60)])
     assert env.arena.is_free(poses[:, :2], 0.3 - 1e-3).all()
     assert np.ptp(poses, axis=0).min() > 1.5

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import zarr
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.exploration import explore
 from arena.motions.brownian import Brownian
@@ -21,7 +21,7 @@ from arena.motions.replay import Replay
 from arena.motions.track import Track
 from arena.recordings import sharding
 from arena.recordings.recording import Recording
-from arena.recordings.sharding import is_whole
+from arena.recordings.sharding import is_complete
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
 
@@ -80,14 +80,14 @@ def test_recording_holds_what_was_seen_and_smelt_on_the_way() -> None:
 
 
 def test_attributes_tell_how_to_do_it_again() -> None:
-    rec = go(seed=3, nose=Nose(noise=0.2), body=Body(radius=0.2))
+    rec = go(seed=3, nose=Nose(noise=0.2), body=Disc(radius=0.2))
     told = rec.attributes
     assert Arena.parse(told["arena"]) == Arena.load("open_field")
     assert told["camera"] == {"kind": "Toy", "gain": 1, "size": [4, 6]}
     parts = [told[part] for part in ("motion", "nose", "body")]
     motion, nose, body = (
         kind(**{name: value for name, value in part.items() if name != "kind"})
-        for kind, part in zip((Brownian, Nose, Body), parts, strict=True)
+        for kind, part in zip((Brownian, Nose, Disc), parts, strict=True)
     )
     again = explore(
         Arena.parse(told["arena"]),
@@ -120,7 +120,7 @@ def test_notes_of_the_walk_are_kept(tmp_path: Path, where: str) -> None:
     arena, out = Arena.load("open_field"), tmp_path / "rec.zarr" if where == "disk" else None
     rec = explore(arena, Chemotaxis(), Toy(), views=VIEWS, out=out)
     walk_rng = np.random.default_rng(np.random.SeedSequence(0).spawn(2)[0])
-    walk = Chemotaxis().walk(arena, Body(), VIEWS, walk_rng)
+    walk = Chemotaxis().walk(arena, Disc(), VIEWS, walk_rng)
     np.testing.assert_array_equal(rec.poses, walk.poses)
     assert rec.attributes["walk"] == walk.notes
     assert len(walk.notes["at_maximum"]) > 3
@@ -217,7 +217,7 @@ def test_killed_at_any_moment_nothing_whole_is_done_again(tmp_path: Path) -> Non
             time.sleep(rng.uniform(0, 20 * 0.02))
             process.kill()
         shard_files = sorted(path.glob("views/c/*/0/0/0"))
-        whole = [shard for shard in shard_files if is_whole(shard, 256)]
+        whole = [shard for shard in shard_files if is_complete(shard, 256)]
         before = [(shard.stat().st_ino, shard.stat().st_mtime_ns) for shard in whole]
         camera = Toy()
         go(camera, out=path, views=views)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.eye.camera import Camera
 from arena.rooms.arena import Arena, gallery
@@ -38,7 +38,7 @@ def use(room: Arena, cell: float) -> None:
     with one_line_at_most():
         x, y = room.sample_free(1, 0.18, np.random.default_rng(0))[0].tolist()
         pose = x, y, 1.0
-        drive = Body().place(room, pose)
+        drive = Disc().place(room, pose)
         for _ in range(5):
             drive.step(0.6, 1.0, 0.1)
     for eye in EYES:

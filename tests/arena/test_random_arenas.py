@@ -6,7 +6,7 @@ import shapely
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.rooms.arena import Arena
 from tests.arena.strategies import arenas
 
@@ -74,7 +74,7 @@ def test_every_sampled_place_is_free(room: Arena, radius: float, seed: int) -> N
 def test_the_body_never_leaves_free_space(room: Arena, radius: float, turning: float, seed: int) -> None:
     rng = np.random.default_rng(seed)
     x, y = place(room, radius, rng)[0].tolist()
-    drive = Body(radius=radius, max_speed=2.0, max_turn=10.0).place(room, (x, y, 0.0))
+    drive = Disc(radius=radius, max_speed=2.0, max_turn=10.0).place(room, (x, y, 0.0))
     commands = zip(rng.uniform(-0.5, 2, 300), turning * rng.standard_normal(300), strict=True)
     poses = [drive.pose for speed, turn in commands if drive.step(speed, turn, 0.05) is not None]
     free = room.free_space(radius)

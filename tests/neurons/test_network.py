@@ -77,9 +77,9 @@ def test_fewer_and_fewer_charts_learn_from_a_view(layers: Layers) -> None:
 def test_complaints(layers: Layers, signs: float, phases: float, said: str) -> None:
     layers.age.fill_(sum(EPOCHS.values()) * EPOCH)
     layers.agreement = torch.tensor([signs, phases])
-    complaint = layers.complain()
-    assert said in complaint
-    assert bool(complaint) == bool(said)
+    first_error = layers.complain()
+    assert said in first_error
+    assert bool(first_error) == bool(said)
 
 
 @pytest.mark.parametrize(("most", "charts"), [(100, 100), (500, 120), (60, 60)])

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arena import Arena, Body, Camera, Replay, explore
+from arena import Arena, Camera, Disc, Replay, explore
 from cogmap.plots import plot_walk
 
 RATS = {"sargolini": (0.0, 0.0, 1.0, 1.0), "tanni": (-0.05, -0.05, 3.55, 2.55)}
-BODY = Body(radius=0.005)
+BODY = Disc(radius=0.005)
 """A path is that of a point on the head."""
 
 
@@ -58,7 +58,7 @@ def test_the_rat_goes_where_it_went(rat: tuple[Arena, Path], tmp_path: Path) -> 
 @pytest.mark.full
 def test_the_rat_sees_and_smells_on_the_way(rat: tuple[Arena, Path]) -> None:
     arena, path = rat
-    seen = explore(arena, Replay(path=path, spacing=0.1), Camera.panoramic(90, 15), body=BODY, views=500)
+    seen = explore(arena, Replay(path=path, view_every_m=0.1), Camera.panoramic(90, 15), body=BODY, views=500)
     assert seen.views.shape == (500, 15, 90, 3)
     assert seen.attributes["walk"]["clipped"] == 0
     moved = np.hypot(*np.diff(seen.poses[:, :2], axis=0).T)

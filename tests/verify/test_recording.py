@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arena.recordings.sharding import file, is_whole, shards
+from arena.recordings.sharding import file, is_complete, shards
 
 pytestmark = pytest.mark.full
 
@@ -39,7 +39,7 @@ def content(path: Path) -> dict[str, str]:
 def complete(path: Path) -> dict[str, tuple[int, int]]:
     """Which shards are whole, by inode and time of their last change."""
     files = [(file(path / "views", rows), rows.stop - rows.start) for rows in shards(VIEWS)]
-    found = [one for one, count in files if is_whole(one, count)]
+    found = [one for one, count in files if is_complete(one, count)]
     return {str(one): (one.stat().st_ino, one.stat().st_mtime_ns) for one in found}
 
 

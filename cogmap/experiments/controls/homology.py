@@ -11,7 +11,7 @@ import pandas as pd
 import shapely
 from jaxtyping import Float
 
-from arena import Arena, Body, Brownian, Camera
+from arena import Arena, Brownian, Camera, Disc
 from cogmap.evaluation.homology_of_map import homologies
 from cogmap.evaluation.populations import grow_map, perceive
 from cogmap.experiments.conditions import Setting, poses_of
@@ -99,7 +99,7 @@ def homology(setting: Setting) -> Result:
 
 def expected_numbers(room: Arena, start: Float[np.ndarray, "2"]) -> dict[str, Numbers]:
     """Tell what a body that starts there (m) should find, from the shape of the free space around it."""
-    pieces = shapely.get_parts(room.free_space(Body().radius))
+    pieces = shapely.get_parts(room.free_space(Disc().radius))
     walked = min(pieces, key=lambda piece: float(piece.distance(shapely.Point(start))))
     holes = len(walked.interiors)
     return {

@@ -9,7 +9,7 @@ import pandas as pd
 import scipy.sparse as sp
 from jaxtyping import Float
 
-from arena import Arena, Body, Brownian, Camera, Chemotaxis, Recording
+from arena import Arena, Brownian, Camera, Chemotaxis, Disc, Recording
 from cogmap.cells import fit_heading_frame, heading_errors
 from cogmap.evaluation.populations import Ground, as_one_table
 from cogmap.experiments.conditions import Setting, poses_of
@@ -110,7 +110,7 @@ def goal_grid(room: Arena) -> Float[np.ndarray, "goals 2"]:
     x0, y0, x1, y1 = room.walkable.bounds
     x, y = ((np.arange(count) + 0.5) / count for count in (ACROSS, ALONG))
     grid = np.stack(np.meshgrid(x0 + (x1 - x0) * x, y0 + (y1 - y0) * y), axis=2).reshape(-1, 2)
-    free: np.ndarray = grid[room.is_free(grid, Body().radius)]
+    free: np.ndarray = grid[room.is_free(grid, Disc().radius)]
     return free
 
 

@@ -11,7 +11,7 @@ import shapely
 from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
-from arena import Arena, Body, Brownian, Camera
+from arena import Arena, Brownian, Camera, Disc
 from cogmap.errors import CogmapError
 from cogmap.evaluation.deviation import path_deviation, path_length
 from cogmap.evaluation.peers.prm import prm_paths
@@ -52,8 +52,8 @@ def roadmap(setting: Setting) -> Result:
     body's disc on it reaches more than 1 mm into a solid. The PRM has as many milestones as there are views,
     and the arena's own collision check; `prm_*` are left out when `ompl` is not installed, as `prm` tells.
     """
-    room, body, around = setting.room, Body(), Camera.panoramic(120, 20)
-    walk = setting.explore(Brownian(), around, body=Body(radius=body.radius + MARGIN))
+    room, body, around = setting.room, Disc(), Camera.panoramic(120, 20)
+    walk = setting.explore(Brownian(), around, body=Disc(radius=body.radius + MARGIN))
     poses = poses_of(walk)
     pairs = draw_pairs(room, body.radius, setting.seed)
     started = time.perf_counter()
@@ -143,7 +143,7 @@ def _scores(
 ) -> pd.DataFrame:
     """Tell of each path what it is worth; NaN where there is none."""
     solids = shapely.union_all([shapely.Polygon(solid.outline) for solid in room.solids])
-    reach = Body().radius - TOUCH
+    reach = Disc().radius - TOUCH
     rows = []
     for path, least in zip(paths, shortest, strict=True):
         row: dict[str, Any] = {"success": path is not None}

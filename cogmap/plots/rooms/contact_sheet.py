@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.figure import Figure
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.eye.camera import Camera
 from arena.rooms.arena import Arena
 from cogmap.plots.rooms.views import WIDTH, draw_views, sheet_height
@@ -47,7 +47,7 @@ def plot_sheet(arena: Arena) -> Figure:
 
 
 def _spread(arena: Arena) -> Float[np.ndarray, "views 3"]:
-    xy = arena.sample_free(CANDIDATES, Body().radius, np.random.default_rng(0))
+    xy = arena.sample_free(CANDIDATES, Disc().radius, np.random.default_rng(0))
     taken = farthest_points(euclidean(xy), VIEWS, 0).indices
     headings = (GOLDEN * np.arange(len(taken)) + np.pi) % (2 * np.pi) - np.pi
     return np.column_stack([xy[taken], headings])

@@ -110,8 +110,8 @@ def _draw_wall(axes: Axes, wall: Wall, walkable: BaseGeometry) -> None:
 
 
 def _draw_solid(axes: Axes, solid: Solid) -> None:
-    lid = _colour(solid.sides[0])
-    axes.add_patch(Polygon(solid.outline, facecolor=lid, edgecolor=INK, linewidth=0.8, zorder=4))
+    top_colour = _colour(solid.sides[0])
+    axes.add_patch(Polygon(solid.outline, facecolor=top_colour, edgecolor=INK, linewidth=0.8, zorder=4))
     said = f"{solid.height:g} m"
     if len(set(solid.sides)) == 1:
         said = f"{solid.sides[0]}\n{said}"
@@ -132,8 +132,8 @@ def _draw_solid(axes: Axes, solid: Solid) -> None:
         va="center",
         rotation=90 if depth > width else 0,
         fontsize=TINY,
-        color="white" if np.dot(lid, (0.3, 0.6, 0.1)) < 0.5 else INK,
-        path_effects=[withStroke(linewidth=2, foreground=lid)],
+        color="white" if np.dot(top_colour, (0.3, 0.6, 0.1)) < 0.5 else INK,
+        path_effects=[withStroke(linewidth=2, foreground=top_colour)],
         clip_on=True,
         zorder=7,
     )

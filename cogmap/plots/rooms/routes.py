@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.rooms.arena import Arena
 from cogmap.inputs import check_array
 from cogmap.plots.rooms.room import draw_surfaces
@@ -78,7 +78,7 @@ def plot_routes(
 
 
 def _draw_route(axes: Axes, path: Float[np.ndarray, "steps 3"]) -> None:
-    swept = shapely.LineString(path[:, :2]).buffer(Body().radius)
+    swept = shapely.LineString(path[:, :2]).buffer(Disc().radius)
     outline = shapely.get_coordinates(swept.exterior)
     axes.add_patch(Polygon(outline, facecolor=GOOD, alpha=0.15, linewidth=0, zorder=1.5))
     x, y, heading = path.T

@@ -50,12 +50,12 @@ def test_climbing_the_middle_column_meets_floor_lids_wall_and_ceiling() -> None:
     def seen(depth: float, height: float) -> float:
         return (height - camera.eye_height) / depth
 
-    def lid(name: str) -> np.ndarray:
+    def top_colour(name: str) -> np.ndarray:
         return np.rint(texture(name).mean(axis=(0, 1)))
 
     assert (between(-1.0, seen(0.5, 0)) == BEHIND_LOW_BOXES.floor).all()
-    assert (between(seen(0.5, 0.15), seen(2.5, 0.15)) == lid("plaid")).all()
-    assert (between(seen(2.5, 0.2), seen(3.1, 0.2)) == lid("tiles")).all()
+    assert (between(seen(0.5, 0.15), seen(2.5, 0.15)) == top_colour("plaid")).all()
+    assert (between(seen(2.5, 0.2), seen(3.1, 0.2)) == top_colour("tiles")).all()
     assert between(seen(3.1, 0.2), seen(3.9, 1)).std(axis=0).min() > 5
     assert (between(seen(3.9, 1), 1.0) == BEHIND_LOW_BOXES.ceiling).all()
 

@@ -1,7 +1,7 @@
 import numpy as np
 
 from arena.rooms.arena import Arena
-from arena.rooms.materials import tint
+from arena.rooms.materials import mean_colour
 
 LAMP = {"azimuth_deg": 90.0, "elevation_deg": 30.0, "strength": 0.5}
 
@@ -29,7 +29,7 @@ def test_a_lamp_lights_the_side_that_faces_it() -> None:
 def test_the_lid_has_the_mean_colour_of_the_sides() -> None:
     box = {"center": (0, 0), "size": (1, 1), "material": ["brick", "oak", "oak", "books"]}
     room = Arena.create(name="lid", platform=[[(2, 0), (3, 0), (3, 1)]], walls=[], boxes=[box])
-    wanted = np.mean([tint(name) for name in box["material"]], axis=0)
+    wanted = np.mean([mean_colour(name) for name in box["material"]], axis=0)
     for face in room.scene.faces:
         np.testing.assert_allclose([face["red"], face["green"], face["blue"]], wanted, rtol=1e-5)
 
@@ -38,4 +38,4 @@ def test_a_textured_floor_starts_at_its_material() -> None:
     room = Arena.load("plus_maze")
     floor, texels = room.scene.floor, room.scene.texels
     found = texels[floor.start : floor.start + 4 * 1024 * 128].reshape(-1, 4)[:, :3].mean(axis=0)
-    np.testing.assert_allclose(found, tint(room.floor), rtol=1e-3)
+    np.testing.assert_allclose(found, mean_colour(room.floor), rtol=1e-3)

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from arena import (
     Arena,
     ArenaError,
-    Body,
     Brownian,
     Chemotaxis,
     Cyclic,
+    Disc,
     Motion,
     Rotation,
     Track,
@@ -20,7 +20,7 @@ from arena import (
 )
 
 MOTIONS = [Brownian(), Rotation(), Cyclic(), Chemotaxis(), Track()]
-SLOW = Body(max_acceleration=1.0, max_turn_acceleration=2.0)
+SLOW = Disc(max_acceleration=1.0, max_turn_acceleration=2.0)
 
 
 def name(motion: Motion) -> str:
@@ -31,7 +31,7 @@ def name(motion: Motion) -> str:
     ("motion", "views"), [(Rotation(), 5_000), (Cyclic(), 4_000), (Brownian(), 17_000)], ids=name
 )
 def test_table_1_of_the_paper_needs_no_number(motion: Motion, views: int) -> None:
-    walk = motion.walk(Arena.load("furnished"), Body(), None, np.random.default_rng(0))
+    walk = motion.walk(Arena.load("furnished"), Disc(), None, np.random.default_rng(0))
     assert walk.times.shape == (views,)
     assert walk.poses.shape == (views, 3)
 
@@ -39,19 +39,19 @@ def test_table_1_of_the_paper_needs_no_number(motion: Motion, views: int) -> Non
 @pytest.mark.parametrize("motion", MOTIONS, ids=name)
 def test_same_seed_same_arrays(motion: Motion) -> None:
     arena = Arena.load("pillar")
-    first, again, other = (motion.walk(arena, Body(), 400, np.random.default_rng(seed)) for seed in (0, 0, 1))
+    first, again, other = (motion.walk(arena, Disc(), 400, np.random.default_rng(seed)) for seed in (0, 0, 1))
     np.testing.assert_array_equal(first.times, again.times)
     np.testing.assert_array_equal(first.poses, again.poses)
     assert first.notes == again.notes
     assert not np.array_equal(first.poses, other.poses)
 
 
-@pytest.mark.parametrize("body", [Body(radius=0.12), SLOW], ids=["at once", "slow"])
+@pytest.mark.parametrize("body", [Disc(radius=0.12), SLOW], ids=["at once", "slow"])
 @pytest.mark.parametrize("motion", MOTIONS, ids=name)
 @settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(seed=st.integers(0, 2**32))
 def test_every_pose_is_free(
-    motion: Motion, body: Body, random_room: Callable[[int], Arena], seed: int
+    motion: Motion, body: Disc, random_room: Callable[[int], Arena], seed: int
 ) -> None:
     arena = random_room(seed)
     try:
@@ -71,7 +71,7 @@ def test_every_pose_is_free(
 @pytest.mark.parametrize("motion", MOTIONS, ids=name)
 def test_every_room_of_the_gallery_can_be_walked(motion: Motion, room: str) -> None:
     arena = Arena.load(room)
-    poses = motion.walk(arena, Body(), 400, np.random.default_rng(0)).poses
+    poses = motion.walk(arena, Disc(), 400, np.random.default_rng(0)).poses
     assert shapely.distance(arena.free_space(0.18), shapely.points(poses[:, :2])).max() < 1e-3
     if name(motion) in {"Cyclic", "Track"}:
         assert np.hypot(*np.ptp(poses[:, :2], axis=0)) > 1.5
@@ -79,7 +79,7 @@ def test_every_room_of_the_gallery_can_be_walked(motion: Motion, room: str) -> N
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=name)
 def test_no_motion_is_faster_than_its_body(motion: Motion) -> None:
-    body = Body(max_speed=0.2, max_turn=0.5)
+    body = Disc(max_speed=0.2, max_turn=0.5)
     walk = motion.walk(Arena.load("open_field"), body, 300, np.random.default_rng(0))
     lapse = np.diff(walk.times)
     assert (np.hypot(*np.diff(walk.poses[:, :2], axis=0).T) <= 0.2 * lapse + 1e-9).all()
@@ -90,4 +90,4 @@ def test_no_motion_is_faster_than_its_body(motion: Motion) -> None:
 @pytest.mark.parametrize("motion", MOTIONS, ids=name)
 def test_body_that_fits_nowhere_is_refused(motion: Motion) -> None:
     with pytest.raises(ArenaError, match="free space"):
-        motion.walk(Arena.load("open_field"), Body(radius=1.6), 10, np.random.default_rng(0))
+        motion.walk(Arena.load("open_field"), Disc(radius=1.6), 10, np.random.default_rng(0))

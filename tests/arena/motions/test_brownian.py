@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import shapely
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
 from arena.motions.brownian import STEP, Brownian
@@ -10,7 +10,7 @@ from arena.rooms.arena import Arena
 
 
 def walk(motion: Brownian, views: int, arena: str = "open_field", seed: int = 0) -> Walk:
-    return motion.walk(Arena.load(arena), Body(), views, np.random.default_rng(seed))
+    return motion.walk(Arena.load(arena), Disc(), views, np.random.default_rng(seed))
 
 
 def turns(poses: np.ndarray) -> np.ndarray:
@@ -42,16 +42,16 @@ def test_views_follow_each_other_at_the_spacing() -> None:
     moved, turned = np.hypot(*np.diff(poses[:, :2], axis=0).T), turns(poses)
     assert times[0] == 0
     assert (np.diff(times) > 0).all()
-    assert moved.max() < motion.spacing + Body().max_speed * STEP
-    assert turned.max() < motion.angle + Body().max_turn * STEP
+    assert moved.max() < motion.view_every_m + Disc().max_speed * STEP
+    assert turned.max() < motion.view_every_rad + Disc().max_turn * STEP
     straight = (turned < 0.1) & (moved > 0.09)
     assert straight.mean() > 0.2
     # A wall may cut the last step short.
-    assert moved[straight].min() > motion.spacing - Body().max_speed * STEP
-    assert np.median(moved[straight]) == pytest.approx(motion.spacing, abs=0.015)
+    assert moved[straight].min() > motion.view_every_m - Disc().max_speed * STEP
+    assert np.median(moved[straight]) == pytest.approx(motion.view_every_m, abs=0.015)
     on_the_spot = moved < 1e-9
     assert 0.1 < on_the_spot.mean() < 0.5
-    assert np.median(turned[on_the_spot]) == pytest.approx(motion.angle, abs=1e-6)
+    assert np.median(turned[on_the_spot]) == pytest.approx(motion.view_every_rad, abs=1e-6)
 
 
 def test_body_stays_in_free_space_and_within_its_speed() -> None:
@@ -59,7 +59,7 @@ def test_body_stays_in_free_space_and_within_its_speed() -> None:
     free = Arena.load("pillar").free_space(0.18)
     assert shapely.distance(free, shapely.points(poses[:, :2])).max() < 1e-3
     speed = np.hypot(*np.diff(poses[:, :2], axis=0).T) / np.diff(times)
-    assert speed.max() < Body().max_speed + 1e-9
+    assert speed.max() < Disc().max_speed + 1e-9
     assert (np.abs(poses[:, 2]) <= np.pi).all()
 
 
@@ -89,12 +89,18 @@ def test_start_inside_a_pillar_or_off_the_platform_is_refused(start: tuple[float
 
 def test_body_that_fits_nowhere_is_refused() -> None:
     with pytest.raises(ArenaError, match="no free space"):
-        Brownian().walk(Arena.load("open_field"), Body(radius=1.6), 10, np.random.default_rng(0))
+        Brownian().walk(Arena.load("open_field"), Disc(radius=1.6), 10, np.random.default_rng(0))
 
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"speed": 0.0}, {"run_length": -1.0}, {"spin_probability": 1.1}, {"angle": np.nan}, {"spacing": np.inf}],
+    [
+        {"speed": 0.0},
+        {"run_length": -1.0},
+        {"spin_probability": 1.1},
+        {"view_every_rad": np.nan},
+        {"view_every_m": np.inf},
+    ],
 )
 def test_bad_parameters_are_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ArenaError, match=next(iter(wrong))):

@@ -3,24 +3,24 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
 from arena.motions.chemotaxis import Chemotaxis
 from arena.rooms.arena import Arena
 
-SLOW = Body(max_acceleration=1.0, max_turn_acceleration=2.0)
+SLOW = Disc(max_acceleration=1.0, max_turn_acceleration=2.0)
 
 
-def climb(motion: Chemotaxis, views: int, arena: Arena, body: Body | None = None, seed: int = 0) -> Walk:
-    return motion.walk(arena, body or Body(), views, np.random.default_rng(seed))
+def climb(motion: Chemotaxis, views: int, arena: Arena, body: Disc | None = None, seed: int = 0) -> Walk:
+    return motion.walk(arena, body or Disc(), views, np.random.default_rng(seed))
 
 
 def peak(arena: Arena, odorant: int) -> np.ndarray:
     """Where the odour is strongest, by looking everywhere near its source where the body can be."""
     source = np.array(arena.sources[odorant].position)
     grid = source + np.stack(np.meshgrid(*2 * [np.linspace(-0.2, 0.2, 201)]), axis=-1).reshape(-1, 2)
-    grid = grid[arena.is_free(grid, Body().radius)]
+    grid = grid[arena.is_free(grid, Disc().radius)]
     return grid[arena.odours.concentration(grid)[:, odorant].argmax()]
 
 
@@ -33,9 +33,9 @@ def blocked() -> Arena:
     return Arena.create(**{**fields, "boxes": boxes, "sources": [{"position": (1.2, -0.2)}]})
 
 
-@pytest.mark.parametrize("body", [Body(), SLOW], ids=["at once", "slow"])
+@pytest.mark.parametrize("body", [Disc(), SLOW], ids=["at once", "slow"])
 @pytest.mark.parametrize("odorant", [0, 1, 2])
-def test_every_stay_is_at_the_maximum_and_sees_all_around(odorant: int, body: Body) -> None:
+def test_every_stay_is_at_the_maximum_and_sees_all_around(odorant: int, body: Disc) -> None:
     arena = Arena.load("furnished")
     walk = climb(Chemotaxis(odorant=odorant), 1500, arena, body)
     stays = walk.notes["at_maximum"]

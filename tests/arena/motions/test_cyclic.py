@@ -1,14 +1,14 @@
 import numpy as np
 import pytest
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.cyclic import Cyclic
 from arena.rooms.arena import Arena
 
 
 def poses(motion: Cyclic, views: int = 4000, arena: str = "open_field", seed: int = 0) -> np.ndarray:
-    return motion.walk(Arena.load(arena), Body(), views, np.random.default_rng(seed)).poses
+    return motion.walk(Arena.load(arena), Disc(), views, np.random.default_rng(seed)).poses
 
 
 @pytest.mark.parametrize("views", [1000, 4000])
@@ -35,7 +35,7 @@ def test_views_follow_each_other_at_the_angle() -> None:
     turned = np.abs(np.angle(np.exp(1j * np.diff(found[:, 2]))))
     moved = np.hypot(*np.diff(found[:, :2], axis=0).T)
     assert np.median(turned) == pytest.approx(0.175, abs=1e-6)
-    # At a pace of 1.75 rad/s a step is half of that.
+    # At a turn rate of 1.75 rad/s a step is half of that.
     assert turned.max() < 1.51 * 0.175
     assert moved.max() < 0.12 + 0.65 * 0.05
 
@@ -48,7 +48,7 @@ def test_it_goes_to_and_fro() -> None:
 
 
 def test_a_slow_body_keeps_to_the_range_too() -> None:
-    slow = Body(max_acceleration=1.0, max_turn_acceleration=2.0)
+    slow = Disc(max_acceleration=1.0, max_turn_acceleration=2.0)
     x, y, _ = Cyclic().walk(Arena.load("open_field"), slow, 4000, np.random.default_rng(0)).poses.T
     assert np.abs(y).max() < 0.07
     assert np.ptp(x) > 3.3
@@ -65,7 +65,7 @@ def test_in_a_narrow_corridor_the_range_is_narrower() -> None:
     wall = [{"start": (-3.0, 1.0), "end": (3.0, 1.0), "material": "brick"}]
     hall = [[(-2.5, -0.2), (2.5, -0.2), (2.5, 0.2), (-2.5, 0.2)]]
     arena = Arena.create(name="track", platform=hall, walls=wall)
-    x, y, _ = Cyclic().walk(arena, Body(), 1500, np.random.default_rng(0)).poses.T
+    x, y, _ = Cyclic().walk(arena, Disc(), 1500, np.random.default_rng(0)).poses.T
     assert np.ptp(x) > 4.3
     assert 0.005 < np.abs(y).max() < 0.0201
 
@@ -83,7 +83,7 @@ def test_a_way_through_a_pillar_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"passes": 0}, {"width": -0.1}, {"angle": np.nan}, {"ends": ((0.0, 0.0),)}]
+    "wrong", [{"passes": 0}, {"width": -0.1}, {"view_every_rad": np.nan}, {"ends": ((0.0, 0.0),)}]
 )
 def test_bad_parameters_are_refused(wrong: dict[str, object]) -> None:
     with pytest.raises(ArenaError, match=next(iter(wrong))):

@@ -3,16 +3,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
 from arena.motions.replay import Replay
 from arena.rooms.arena import Arena
 
-SMALL = Body(radius=0.01)
+SMALL = Disc(radius=0.01)
 
 
-def replay(motion: Replay, views: int | None = None, arena: str = "open_field", body: Body = SMALL) -> Walk:
+def replay(motion: Replay, views: int | None = None, arena: str = "open_field", body: Disc = SMALL) -> Walk:
     return motion.walk(Arena.load(arena), body, views, np.random.default_rng(0))
 
 
@@ -117,7 +117,7 @@ def test_views_by_distance(save) -> None:
     # It stops for five seconds halfway.
     x = np.concatenate([np.linspace(-1, 0, 201), np.zeros(250), np.linspace(0, 1, 101)])
     path = {"t": 0.02 * np.arange(len(x)), "x": x, "y": 0.1 * np.ones(len(x))}
-    poses = replay(Replay(path=save(**path), spacing=0.05)).poses
+    poses = replay(Replay(path=save(**path), view_every_m=0.05)).poses
     np.testing.assert_allclose(poses[:, 0], np.linspace(-1, 1, 41), atol=1e-9)
 
 
@@ -139,7 +139,7 @@ def test_scaled_and_moved(save) -> None:
 def test_fitted_into_the_room(save, stretch: tuple[float, float]) -> None:
     path = circle(2000)
     pos = path["pos"] * stretch + [40.0, -9.0]
-    poses = replay(Replay(path=save(t=path["t"], pos=pos, heading=path["t"]), fit=True), body=Body()).poses
+    poses = replay(Replay(path=save(t=path["t"], pos=pos, heading=path["t"]), fit=True), body=Disc()).poses
     # The body's centre has 3.64 by 2.64 m.
     scale = min((side / (2 * s) for side, s in zip((3.64, 2.64), stretch, strict=True) if s), default=1)
     np.testing.assert_allclose(poses[:, :2], scale * (path["pos"] * stretch), atol=1e-4)
@@ -180,13 +180,13 @@ def test_an_endless_gap_is_refused(save) -> None:
 
 def test_body_that_fits_nowhere_is_refused(save) -> None:
     with pytest.raises(ArenaError, match="no free space"):
-        replay(Replay(path=save(**circle())), body=Body(radius=1.6))
+        replay(Replay(path=save(**circle())), body=Disc(radius=1.6))
 
 
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        ({"interval": 0.1, "spacing": 0.1}, "choose one"),
+        ({"interval": 0.1, "view_every_m": 0.1}, "choose one"),
         ({"fit": True, "scale": 2.0}, "leave them out"),
         ({"fit": True, "offset": (1.0, 0.0)}, "leave them out"),
         ({"scale": 0.0}, "scale"),

@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
 from arena.motions.rotation import Rotation
 from arena.rooms.arena import Arena
 
 
-def spin(motion: Rotation, views: int = 1000, arena: str = "open_field", body: Body | None = None) -> Walk:
-    return motion.walk(Arena.load(arena), body or Body(), views, np.random.default_rng(0))
+def spin(motion: Rotation, views: int = 1000, arena: str = "open_field", body: Disc | None = None) -> Walk:
+    return motion.walk(Arena.load(arena), body or Disc(), views, np.random.default_rng(0))
 
 
 def gaps(headings: np.ndarray) -> np.ndarray:
@@ -18,15 +18,15 @@ def gaps(headings: np.ndarray) -> np.ndarray:
 
 
 def test_even_turns_are_one_place_and_all_angles() -> None:
-    times, poses, _ = spin(Rotation(position=(0.5, -0.3), turns=1, jitter=0.0, pace=2.0))
+    times, poses, _ = spin(Rotation(position=(0.5, -0.3), turns=1, jitter=0.0, turn_rate=2.0))
     np.testing.assert_array_equal(poses[:, :2], [(0.5, -0.3)] * 1000)
     np.testing.assert_allclose(gaps(poses[:, 2]), 2 * np.pi / 1000, atol=1e-9)
     np.testing.assert_allclose(np.unwrap(poses[:, 2]) - poses[0, 2], 2.0 * times, atol=1e-9)
 
 
 @pytest.mark.parametrize("turns", [1, 10])
-@pytest.mark.parametrize("body", [Body(), Body(max_turn_acceleration=2.0)], ids=["at once", "slow"])
-def test_jittered_headings_are_each_in_their_part_of_the_way(turns: int, body: Body) -> None:
+@pytest.mark.parametrize("body", [Disc(), Disc(max_turn_acceleration=2.0)], ids=["at once", "slow"])
+def test_jittered_headings_are_each_in_their_part_of_the_way(turns: int, body: Disc) -> None:
     poses = spin(Rotation(turns=turns), 1000, body=body).poses
     step = 2 * np.pi * turns / 1000
     turned = np.unwrap(poses[:, 2])
@@ -40,7 +40,7 @@ def test_jittered_headings_are_each_in_their_part_of_the_way(turns: int, body: B
 
 
 def test_it_never_turns_back_and_keeps_its_pace() -> None:
-    times, poses, _ = spin(Rotation(turns=3, pace=1.5), 300)
+    times, poses, _ = spin(Rotation(turns=3, turn_rate=1.5), 300)
     turned, lapse = np.diff(np.unwrap(poses[:, 2])), np.diff(times)
     assert (turned > 0).all()
     np.testing.assert_allclose(turned, 1.5 * lapse, atol=1e-9)
@@ -60,7 +60,9 @@ def test_a_place_that_is_not_free_is_refused(position: tuple[float, float]) -> N
         spin(Rotation(position=position), 5, "pillar")
 
 
-@pytest.mark.parametrize("wrong", [{"turns": 0}, {"jitter": 1.1}, {"pace": 0.0}, {"position": (np.nan, 0.0)}])
+@pytest.mark.parametrize(
+    "wrong", [{"turns": 0}, {"jitter": 1.1}, {"turn_rate": 0.0}, {"position": (np.nan, 0.0)}]
+)
 def test_bad_parameters_are_refused(wrong: dict[str, object]) -> None:
     with pytest.raises(ArenaError, match=next(iter(wrong))):
         Rotation(**wrong)

@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
 from arena.motions.track import Track
 from arena.rooms.arena import Arena
 
 
-def run(motion: Track, views: int = 600, arena: str = "open_field", body: Body | None = None) -> Walk:
-    return motion.walk(Arena.load(arena), body or Body(), views, np.random.default_rng(0))
+def run(motion: Track, views: int = 600, arena: str = "open_field", body: Disc | None = None) -> Walk:
+    return motion.walk(Arena.load(arena), body or Disc(), views, np.random.default_rng(0))
 
 
 def test_it_stays_on_the_long_axis_and_reaches_both_ends() -> None:
@@ -50,7 +50,7 @@ def test_the_ends_may_be_told() -> None:
 
 
 def test_a_slow_body_keeps_near_the_line() -> None:
-    x, y, _ = run(Track(), body=Body(max_acceleration=1.0, max_turn_acceleration=2.0)).poses.T
+    x, y, _ = run(Track(), body=Disc(max_acceleration=1.0, max_turn_acceleration=2.0)).poses.T
     assert np.abs(y).max() < 0.03
     assert np.ptp(x) > 3.5
 
@@ -59,7 +59,7 @@ def test_the_long_way_of_an_l_is_one_of_its_arms() -> None:
     ell = [(0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0)]
     wall = [{"start": (-9.0, -9.0), "end": (9.0, -9.0), "material": "brick"}]
     arena = Arena.create(name="ell", platform=[ell], walls=wall)
-    x, y, _ = Track().walk(arena, Body(), 300, np.random.default_rng(0)).poses.T
+    x, y, _ = Track().walk(arena, Disc(), 300, np.random.default_rng(0)).poses.T
     assert (x.min(), x.max()) == pytest.approx((0.2, 3.8), abs=0.05)
     assert np.ptp(y) < 1e-6
     assert 0.18 < y.min() < 0.82
@@ -70,7 +70,7 @@ def test_a_turned_platform_has_a_turned_axis() -> None:
     hall = (np.array([[-2, -0.5], [2, -0.5], [2, 0.5], [-2, 0.5]]) @ turn).tolist()
     wall = [{"start": (-9.0, -9.0), "end": (9.0, -9.0), "material": "brick"}]
     arena = Arena.create(name="turned", platform=[hall], walls=wall)
-    poses = Track().walk(arena, Body(), 300, np.random.default_rng(0)).poses
+    poses = Track().walk(arena, Disc(), 300, np.random.default_rng(0)).poses
     along, across = (poses[:, :2] @ turn.T).T
     np.testing.assert_allclose(across, 0, atol=1e-6)
     assert np.ptp(along) == pytest.approx(3.6, abs=0.1)
@@ -80,7 +80,7 @@ def test_the_long_way_of_a_cross_is_one_of_its_bars() -> None:
     bars = [[(-a, -b), (a, -b), (a, b), (-a, b)] for a, b in ((2.0, 0.25), (0.25, 2.0))]
     wall = [{"start": (-9.0, -9.0), "end": (9.0, -9.0), "material": "brick"}]
     arena = Arena.create(name="cross", platform=bars, walls=wall)
-    x, y, _ = Track().walk(arena, Body(), 300, np.random.default_rng(0)).poses.T
+    x, y, _ = Track().walk(arena, Disc(), 300, np.random.default_rng(0)).poses.T
     assert sorted([np.ptp(x), np.ptp(y)]) == pytest.approx([0.0, 3.6], abs=0.1)
 
 
@@ -93,7 +93,9 @@ def test_something_in_the_way_is_told() -> None:
         run(Track(ends=((-1.5, 0.0), (-1.5, 0.0))))
 
 
-@pytest.mark.parametrize("wrong", [{"speed": 0.0}, {"pace": -1.0}, {"speed_spread": np.nan}, {"ends": 3}])
+@pytest.mark.parametrize(
+    "wrong", [{"speed": 0.0}, {"turn_rate": -1.0}, {"speed_spread": np.nan}, {"ends": 3}]
+)
 def test_bad_parameters_are_refused(wrong: dict[str, object]) -> None:
     with pytest.raises(ArenaError, match=next(iter(wrong))):
         Track(**wrong)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arena.recordings import sharding
-from arena.recordings.sharding import SHARD, codec, file, is_whole, shards, writing
+from arena.recordings.sharding import SHARD, codec, file, is_complete, shard_writer, shards
 
 IMAGES = np.random.default_rng(0).integers(0, 9, (SHARD + 44, 4, 6, 3), dtype=np.uint8)
 FIRST, SECOND = shards(len(IMAGES))
@@ -18,7 +18,7 @@ FIRST, SECOND = shards(len(IMAGES))
 
 @pytest.fixture
 def written(tmp_path: Path) -> Path:
-    with writing(tmp_path) as writer:
+    with shard_writer(tmp_path) as writer:
         for rows in (FIRST, SECOND):
             writer[rows] = IMAGES[rows]
     return tmp_path
@@ -54,18 +54,18 @@ def test_bytes_are_those_of_zarr(tmp_path: Path, written: Path) -> None:
 
 
 def test_what_is_written_is_whole(written: Path) -> None:
-    assert is_whole(file(written, FIRST), SHARD)
-    assert is_whole(file(written, SECOND), 44)
-    assert not is_whole(file(written, SECOND), 43)
-    assert not is_whole(file(written, SECOND), 45)
-    assert not is_whole(written, 1)
-    assert not is_whole(written / "nothing", 1)
+    assert is_complete(file(written, FIRST), SHARD)
+    assert is_complete(file(written, SECOND), 44)
+    assert not is_complete(file(written, SECOND), 43)
+    assert not is_complete(file(written, SECOND), 45)
+    assert not is_complete(written, 1)
+    assert not is_complete(written / "nothing", 1)
 
 
 def test_shard_that_lacks_an_image_is_not_whole(tmp_path: Path) -> None:
     by_zarr(tmp_path, np.concatenate([IMAGES[:100], 0 * IMAGES[:1], IMAGES[101:]]))
-    assert not is_whole(file(tmp_path, FIRST), SHARD)
-    assert is_whole(file(tmp_path, SECOND), 44)
+    assert not is_complete(file(tmp_path, FIRST), SHARD)
+    assert is_complete(file(tmp_path, SECOND), 44)
 
 
 @given(data=st.data())
@@ -73,7 +73,7 @@ def test_what_is_cut_or_lengthened_or_has_another_index_is_not_whole(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
 ) -> None:
     folder = tmp_path_factory.mktemp("shard")
-    with writing(folder) as writer:
+    with shard_writer(folder) as writer:
         writer[slice(0, 3)] = IMAGES[:3]
     path = file(folder, slice(0, 3))
     sound = path.read_bytes()
@@ -89,7 +89,7 @@ def test_what_is_cut_or_lengthened_or_has_another_index_is_not_whole(
         damaged = bytearray(sound)
         damaged[-at] ^= data.draw(st.integers(1, 255))
     path.write_bytes(damaged)
-    assert is_whole(path, 3) == (bytes(damaged) == sound)
+    assert is_complete(path, 3) == (bytes(damaged) == sound)
 
 
 def test_large_images_give_the_same_bytes_every_time(tmp_path: Path) -> None:
@@ -97,7 +97,7 @@ def test_large_images_give_the_same_bytes_every_time(tmp_path: Path) -> None:
     images = np.repeat(np.random.default_rng(0).integers(0, 256, (4, 500, 200, 3), dtype=np.uint8), 8, axis=2)
     found = set()
     for attempt in range(10):
-        with writing(tmp_path / str(attempt)) as writer:
+        with shard_writer(tmp_path / str(attempt)) as writer:
             writer[slice(0, 4)] = images
         found.add(file(tmp_path / str(attempt), slice(0, 4)).read_bytes())
     assert len(found) == 1
@@ -111,21 +111,21 @@ def test_next_shard_can_be_made_while_one_is_written(tmp_path: Path, monkeypatch
         real(path, images)
 
     monkeypatch.setattr(sharding, "_write", slow)
-    with writing(tmp_path) as writer:
+    with shard_writer(tmp_path) as writer:
         writer[FIRST] = IMAGES[FIRST]
         made.set()
         writer[SECOND] = IMAGES[SECOND]
-    assert is_whole(file(tmp_path, SECOND), 44)
+    assert is_complete(file(tmp_path, SECOND), 44)
 
 
 @pytest.mark.parametrize("more", [[], [FIRST]], ids=["at the end", "with the next shard"])
 def test_what_cannot_be_written_leaves_nothing_and_is_told(tmp_path: Path, more: list[slice]) -> None:
     (tmp_path / "c" / "0").mkdir(parents=True)
     (tmp_path / "c" / "1").write_text("in the way")
-    with pytest.raises(NotADirectoryError), writing(tmp_path) as writer:
+    with pytest.raises(NotADirectoryError), shard_writer(tmp_path) as writer:
         for rows in (FIRST, SECOND, *more):
             writer[rows] = IMAGES[rows]
-    assert is_whole(file(tmp_path, FIRST), SHARD)
+    assert is_complete(file(tmp_path, FIRST), SHARD)
     assert not list(tmp_path.rglob("*.partial"))
 
 
@@ -134,6 +134,6 @@ def test_what_fails_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(sharding, "_checksum", full)
-    with pytest.raises(OSError, match="No space left"), writing(tmp_path) as writer:
+    with pytest.raises(OSError, match="No space left"), shard_writer(tmp_path) as writer:
         writer[FIRST] = IMAGES[FIRST]
     assert not [path for path in tmp_path.rglob("*") if path.is_file()]

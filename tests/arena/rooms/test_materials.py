@@ -4,7 +4,7 @@ import sys
 import numpy as np
 import pytest
 
-from arena.rooms.materials import LEVELS, MATERIALS, TEXEL, TILE, texture, tint, weave
+from arena.rooms.materials import LEVELS, MATERIALS, TEXEL, TILE, mean_colour, mip_maps, texture
 
 PLAIN = {"white", "blue"}
 NAMES = tuple(sorted(MATERIALS))
@@ -56,9 +56,9 @@ def test_hardly_a_texel_is_clipped(name: str) -> None:
 
 @pytest.mark.parametrize("level", [(0, 0), (3, 0), (0, 5), (4, 2), (10, 7)])
 def test_texels_of_a_level_are_means_of_the_tile(level: tuple[int, int]) -> None:
-    texels, place = weave(NAMES)
+    texels, level_starts = mip_maps(NAMES)
     (i, j), (long, high) = level, (TILE[0] >> level[0], TILE[1] >> level[1])
-    start = place[level]
+    start = level_starts[level]
     for material, name in enumerate(NAMES):
         found = texels[material, start : start + 4 * long * high].reshape(long, high, 4)
         wanted = texture(name).reshape(long, 1 << i, high, 1 << j, 3).mean(axis=(1, 3))
@@ -67,17 +67,17 @@ def test_texels_of_a_level_are_means_of_the_tile(level: tuple[int, int]) -> None
 
 
 def test_levels_lie_end_to_end() -> None:
-    texels, place = weave(NAMES)
+    texels, level_starts = mip_maps(NAMES)
     sizes = [4 * (TILE[0] >> i) * (TILE[1] >> j) for i, j in np.ndindex(LEVELS)]
-    np.testing.assert_array_equal(np.diff(place.ravel()), sizes[:-1])
+    np.testing.assert_array_equal(np.diff(level_starts.ravel()), sizes[:-1])
     assert texels.shape == (len(NAMES), sum(sizes))
 
 
 def test_weaves_of_fewer_materials_are_rows_of_the_whole() -> None:
-    some, every = weave(("brick", "oak")), weave(NAMES)
+    some, every = mip_maps(("brick", "oak")), mip_maps(NAMES)
     np.testing.assert_array_equal(some.texels, every.texels[[NAMES.index("brick"), NAMES.index("oak")]])
-    np.testing.assert_array_equal(some.place, every.place)
+    np.testing.assert_array_equal(some.level_starts, every.level_starts)
 
 
 def test_the_tint_is_the_mean_colour() -> None:
-    np.testing.assert_allclose(tint("oak"), texture("oak").mean(axis=(0, 1)), rtol=1e-6)
+    np.testing.assert_allclose(mean_colour("oak"), texture("oak").mean(axis=(0, 1)), rtol=1e-6)

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from arena import Arena, Body
+from arena import Arena, Disc
 from cogmap.experiments.controls import homology as module
 from cogmap.experiments.controls.homology import Case, expected_numbers
 from cogmap.experiments.registry import EXPERIMENTS, experiment
@@ -28,7 +28,7 @@ def found(
 @pytest.mark.parametrize("name", HOLES)
 def test_a_pillar_is_a_hole_and_turning_a_circle(name: str) -> None:
     room = Arena.load(name)
-    (start,) = room.sample_free(1, Body().radius, np.random.default_rng(0))
+    (start,) = room.sample_free(1, Disc().radius, np.random.default_rng(0))
     assert expected_numbers(room, start) == {
         "view_manifold": (1, 1 + HOLES[name], VOIDS[name]),
         "fused": (1, 1 + HOLES[name]),

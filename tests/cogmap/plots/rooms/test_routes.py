@@ -5,7 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import same_color
 from matplotlib.figure import Figure
 
-from arena import Arena, Body
+from arena import Arena, Disc
 from cogmap import CogmapError
 from cogmap.plots import plot_routes
 from cogmap.plots.rooms.routes import ARROW
@@ -46,8 +46,8 @@ def test_the_band_is_what_the_body_sweeps() -> None:
     band = shapely.Polygon(bands[0].get_xy())
     assert len(bands) == 1
     path = shapely.LineString(MINE[:, :2])
-    assert band.area == pytest.approx(path.buffer(Body().radius).area)
-    assert band.boundary.distance(path) == pytest.approx(Body().radius, rel=0.01)
+    assert band.area == pytest.approx(path.buffer(Disc().radius).area)
+    assert band.boundary.distance(path) == pytest.approx(Disc().radius, rel=0.01)
 
 
 def test_axes_are_metres_and_hold_the_platform() -> None:

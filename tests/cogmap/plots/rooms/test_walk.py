@@ -3,7 +3,7 @@ import pytest
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from arena.bodies.disc import Body
+from arena.bodies.disc import Disc
 from arena.motions.rotation import Rotation
 from arena.rooms.arena import Arena
 from cogmap.errors import CogmapError
@@ -45,7 +45,7 @@ def test_axes_have_units_and_hold_the_room(room: Arena) -> None:
 
 
 def test_of_many_views_some_are_drawn_and_it_says_so(room: Arena) -> None:
-    walk = Rotation().walk(room, Body(), None, np.random.default_rng(0))
+    walk = Rotation().walk(room, Disc(), None, np.random.default_rng(0))
     figure = plot_walk(room, walk.times, walk.poses)
     drawn = len(lines(figure)[1].get_segments())
     assert 0.5 * STROKES <= drawn <= STROKES
