@@ -47,7 +47,7 @@ def grown(
     odours = smell()
     layer = PlaceCells(CELLS, 1, odours.shape[1])
     for batch in odours.split(256):
-        layer.compete(batch, memory=POSITIONS)
+        layer.compete(batch, window=POSITIONS)
     return smell, layer.tuning
 
 

@@ -51,7 +51,7 @@ def learn(path: Path, views: int) -> Figures:
         cmap.partial_fit(piece, walk.odours[start : start + PIECE], jump=True)
         spent.append(time.perf_counter() - started)
         peaks.append(peak())
-    tenth, begun = len(spent) // 10, cmap._layers.begins(STAGES[-1]) // PIECE  # noqa: SLF001
+    tenth, begun = len(spent) // 10, cmap._network.begins(STAGES[-1]) // PIECE  # noqa: SLF001
     return {
         "views": len(spent) * PIECE,
         "views_per_s": len(spent) * PIECE / sum(spent),

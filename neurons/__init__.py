@@ -1,9 +1,9 @@
 """Plastic layers that learn by local Hebbian rules; handed views and odours, they know nothing else."""
 
 from neurons.atlas.atlas import Atlas
-from neurons.atlas.disambiguation import branches
+from neurons.atlas.disambiguation import place_branches
 from neurons.atlas.heading_axis import heading_axes
-from neurons.atlas.metric_map import Gauge
+from neurons.atlas.metric_map import MetricMap
 from neurons.atlas.synchronisation import Compass, synchronise
 from neurons.errors import NeuronsError
 from neurons.layers.afferents import Afferents
@@ -11,29 +11,29 @@ from neurons.layers.charts import Charts
 from neurons.layers.heading_cells import HeadDirectionCells
 from neurons.layers.olfaction import Olfaction
 from neurons.layers.place_cells import PlaceCells
-from neurons.layers.readout import Recall
+from neurons.layers.readout import Readout
 from neurons.layers.retina import Retina
 from neurons.layers.sanger import Sanger
 from neurons.merging import forked, merge
-from neurons.network import Layers
+from neurons.network import Network
 
 __all__ = [
     "Afferents",
     "Atlas",
     "Charts",
     "Compass",
-    "Gauge",
     "HeadDirectionCells",
-    "Layers",
+    "MetricMap",
+    "Network",
     "NeuronsError",
     "Olfaction",
     "PlaceCells",
-    "Recall",
+    "Readout",
     "Retina",
     "Sanger",
-    "branches",
     "forked",
     "heading_axes",
     "merge",
+    "place_branches",
     "synchronise",
 ]

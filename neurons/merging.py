@@ -7,11 +7,17 @@ from copy import deepcopy
 import torch
 
 from neurons.errors import NeuronsError
-from neurons.network import EPOCHS, STAGES, Layers
+from neurons.network import EPOCHS, STAGES, Network
 
 SUMS = {
     "olfaction": ("olfaction.gram", "olfaction.cross"),
-    "gauge": ("gauge.spread", "gauge.ahead", "gauge.shared", "gauge.counted", "gauge.seen"),
+    "metric_map": (
+        "metric_map.spread",
+        "metric_map.ahead",
+        "metric_map.shared",
+        "metric_map.counted",
+        "metric_map.seen",
+    ),
     "afferents": (
         "place.afferents.association",
         "place.afferents.activity",
@@ -20,11 +26,11 @@ SUMS = {
     ),
 }
 """What each stage adds to. In the others units compete, and what they learn depends on the order of views."""
-OWN = ("age", "gauge.recent")
+OWN = ("views_seen", "metric_map.recent")
 """In what else two maps may differ: the views so far, and the last of them."""
 
 
-def forked(layers: Layers) -> Layers:
+def forked(network: Network) -> Network:
     """Copy layers, but for what they have summed up in the present stage.
 
     Raises
@@ -32,17 +38,17 @@ def forked(layers: Layers) -> Layers:
     NeuronsError
         In a stage that learns no sums.
     """
-    layers.mature()
-    stage = _shared_stage(layers)
-    other = deepcopy(layers)
+    network.advance_stage()
+    stage = _shared_stage(network)
+    other = deepcopy(network)
     for name in SUMS[stage]:
         other.get_buffer(name).zero_()
-    other.gauge.jump()
-    other.age.fill_(layers.begins(stage))
+    other.metric_map.break_sequence()
+    other.views_seen.fill_(network.begins(stage))
     return other
 
 
-def merge(layers: Layers, other: Layers) -> None:
+def merge(network: Network, other: Network) -> None:
     """Add to the layers what others, in the same stage on the same charts, have learnt in it.
 
     The views of both count, but do not carry the stage beyond its end.
@@ -52,23 +58,23 @@ def merge(layers: Layers, other: Layers) -> None:
     NeuronsError
         When they differ in anything but these sums.
     """
-    if layers.stage == STAGES[int(other.matured)]:
-        layers.mature()
-    stage = _shared_stage(layers)
-    _check_kin(layers, other, stage)
+    if network.stage == STAGES[int(other.stage_index)]:
+        network.advance_stage()
+    stage = _shared_stage(network)
+    _check_kin(network, other, stage)
     for name in SUMS[stage]:
-        layers.get_buffer(name).add_(other.get_buffer(name))
-    begun = layers.begins(stage)
-    age, others = int(layers.age), int(other.age)
-    together = age + others - begun
+        network.get_buffer(name).add_(other.get_buffer(name))
+    begun = network.begins(stage)
+    views_seen, others = int(network.views_seen), int(other.views_seen)
+    together = views_seen + others - begun
     if stage != STAGES[-1]:
-        together = min(together, max(begun + EPOCHS[stage] * layers.epoch, age, others))
-    layers.age.fill_(together)
+        together = min(together, max(begun + EPOCHS[stage] * network.epoch, views_seen, others))
+    network.views_seen.fill_(together)
 
 
-def _shared_stage(layers: Layers) -> str:
+def _shared_stage(network: Network) -> str:
     """Give the stage that layers are in, if its work can be shared."""
-    stage = STAGES[int(layers.matured)]
+    stage = STAGES[int(network.stage_index)]
     if stage not in SUMS:
         raise NeuronsError(
             f"this map is in its {stage!r} stage, in which units compete for one view after the other; "
@@ -77,16 +83,16 @@ def _shared_stage(layers: Layers) -> str:
     return stage
 
 
-def _check_kin(layers: Layers, other: Layers, stage: str) -> None:
-    mine, its = layers.state_dict(), other.state_dict()
-    if layers.epoch != other.epoch or any(mine[name].shape != its[name].shape for name in mine):
+def _check_kin(network: Network, other: Network, stage: str) -> None:
+    mine, its = network.state_dict(), other.state_dict()
+    if network.epoch != other.epoch or any(mine[name].shape != its[name].shape for name in mine):
         raise NeuronsError(
             "these maps differ in views, odorants, charts, components, cells or epoch; merge forks of one map"
         )
-    if other.matured != layers.matured:
+    if other.stage_index != network.stage_index:
         raise NeuronsError(
-            f"this map is in its {stage!r} stage and the other in its {STAGES[int(other.matured)]!r} stage; "
-            "merge them before either leaves the stage in which they parted"
+            f"this map is in its {stage!r} stage and the other in its {STAGES[int(other.stage_index)]!r} "
+            "stage; merge them before either leaves the stage in which they parted"
         )
     for name in mine:
         if name in (*SUMS[stage], *OWN):

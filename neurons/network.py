@@ -1,4 +1,4 @@
-"""The layers in a row, and the order in which they mature."""
+"""The layers in a row, and the stages in which they learn."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from torch import Tensor, nn
 
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.heading_axis import heading_axes
-from neurons.atlas.metric_map import Gauge
+from neurons.atlas.metric_map import MetricMap
 from neurons.atlas.synchronisation import synchronise
 from neurons.errors import NeuronsError
 from neurons.layers.afferents import Afferents
@@ -19,13 +19,13 @@ from neurons.layers.charts import Charts
 from neurons.layers.heading_cells import HeadDirectionCells
 from neurons.layers.olfaction import Olfaction
 from neurons.layers.place_cells import PlaceCells
-from neurons.layers.readout import Recall
+from neurons.layers.readout import Readout
 from neurons.layers.sanger import Sanger
 
-EPOCHS = {"code": 4, "charts": 6, "olfaction": 1, "cells": 2, "gauge": 1, "afferents": 1}
+EPOCHS = {"code": 4, "charts": 6, "olfaction": 1, "cells": 2, "metric_map": 1, "afferents": 1}
 """Stages of development, in order, and how many epochs of views each lasts."""
 STAGES = tuple(EPOCHS)
-IN_ORDER = "gauge"
+IN_ORDER = "metric_map"
 """The stage that learns from the order of views."""
 WINNERS = (12, 4)
 """Charts that learn from a view, at the beginning and at the end of their stage."""
@@ -37,13 +37,13 @@ SIGNS = 0.995
 """Least agreement of the heading axes on a direction of turning."""
 
 
-class Layers(nn.Module):
-    """Sanger code, charts, olfaction, recall, two populations and a gauge, maturing one after the other.
+class Network(nn.Module):
+    """Code, charts, olfaction, readout, two populations and a metric map, learning one after the other.
 
     Each layer learns during its own critical period, and those before it are then fixed: first the code, then
     the charts; then each chart learns how smell changes across it; then the charts agree on a compass, the
-    cells share out what is recalled; from the order of views the gauge learns where places are and by how
-    much the compass is off there; and at last the cells' afferents from sight are learnt. From the third
+    cells share out what is recalled; from the order of views the metric map learns where places are and by
+    how much the compass is off there; and at last the cells' afferents from sight are learnt. From the third
     stage on, all but what the cells compete for are sums.
 
     Parameters
@@ -61,8 +61,8 @@ class Layers(nn.Module):
         Draws the initial weights.
     """
 
-    age: Tensor
-    matured: Tensor
+    views_seen: Tensor
+    stage_index: Tensor
     agreement: Tensor
 
     def __init__(
@@ -84,18 +84,18 @@ class Layers(nn.Module):
         self.code = Sanger(features, components, generator=generator)
         self.charts = Charts(charts, components, generator=generator)
         self.olfaction = Olfaction(charts, odorants)
-        self.recall = Recall(charts, components, odorants)
+        self.readout = Readout(charts, components, odorants)
         self.place = PlaceCells(place_cells, charts, odorants)
         self.heading = HeadDirectionCells(heading_cells, charts, generator=generator)
-        self.gauge = Gauge(place_cells, odorants)
-        self.register_buffer("age", torch.zeros((), dtype=torch.int64))
-        self.register_buffer("matured", torch.zeros((), dtype=torch.int64))
+        self.metric_map = MetricMap(place_cells, odorants)
+        self.register_buffer("views_seen", torch.zeros((), dtype=torch.int64))
+        self.register_buffer("stage_index", torch.zeros((), dtype=torch.int64))
         self.register_buffer("agreement", torch.full((2,), torch.nan))
 
     @property
     def stage(self) -> str:
         """The stage of development that the next view falls into; the last one never ends."""
-        return next(stage for stage in reversed(STAGES) if self.begins(stage) <= int(self.age))
+        return next(stage for stage in reversed(STAGES) if self.begins(stage) <= int(self.views_seen))
 
     def begins(self, stage: str) -> int:
         """How many views come before a stage."""
@@ -105,41 +105,41 @@ class Layers(nn.Module):
         self, strips: Float[Tensor, "views features"], log_odours: Float[Tensor, "views odorants"]
     ) -> None:
         """Let the layer whose period it is learn from a batch."""
-        self.mature()
+        self.advance_stage()
         stage = self.stage
-        self.age += len(strips)
+        self.views_seen += len(strips)
         if stage == "code":
             self.code.partial_fit(strips)
             return
         codes = self.code(strips)
         if stage == "charts":
-            self.charts.partial_fit(codes, winners=self._winners(), memory=float(self.epoch))
+            self.charts.partial_fit(codes, winners=self._winners(), window=float(self.epoch))
         elif stage == "olfaction":
             nearest = self.charts.excite(codes, SMELLING)
-            width = self.recall.spacing[nearest.chart]
+            width = self.readout.spacing[nearest.chart]
             weight = torch.exp(-0.5 * nearest.squared_distance / width**2)
             coordinates = self.charts.coordinates(codes, nearest.chart)
             self.olfaction.partial_fit(nearest.chart, weight, coordinates, log_odours)
         else:
-            excited = self.recall.excite(self.charts, codes)
-            headings, odours = self.recall(self.charts, codes, excited)
+            excited = self.readout.excite(self.charts, codes)
+            headings, odours = self.readout(self.charts, codes, excited)
             if stage == "cells":
-                self.place.compete(odours, memory=float(self.epoch))
-                self.heading.compete(headings, memory=float(self.epoch))
-            elif stage == "gauge":
-                self.gauge.partial_fit(self.place, odours, headings)
+                self.place.compete(odours, window=float(self.epoch))
+                self.heading.compete(headings, window=float(self.epoch))
+            elif stage == "metric_map":
+                self.metric_map.partial_fit(self.place, odours, headings)
             else:
-                corrected = headings + self.gauge(self.place, odours).offset
+                corrected = headings + self.metric_map(self.place, odours).offset
                 self.place.afferents.partial_fit(excited, self.place.instruct(excited, odours))
                 self.heading.afferents.partial_fit(excited, self.heading.tuning(corrected))
 
-    def complain(self) -> str:
+    def diagnosis(self) -> str:
         """Say why this map cannot be trusted, or nothing when it can."""
         if self.stage != STAGES[-1]:
             return f"it is still in its {self.stage!r} stage; show it more views"
-        return self._doubt()
+        return self.atlas_diagnosis()
 
-    def _doubt(self) -> str:
+    def atlas_diagnosis(self) -> str:
         """Say in what the charts do not agree, or nothing when they do."""
         signs, phases = self.agreement.tolist()
         if not math.isfinite(phases):
@@ -153,44 +153,46 @@ class Layers(nn.Module):
             return f"its heading axes agree only to {signs:.3f}; use more charts or more odour sources"
         return ""
 
-    def complain_of_metric(self) -> str:
+    def metric_diagnosis(self) -> str:
         """Say why there is no metric map, or nothing when there is one."""
         if self.stage != STAGES[-1]:
             return f"this map is still in its {self.stage!r} stage; show it more views"
-        return self.gauge.complain()
+        return self.metric_map.diagnosis()
 
     def _winners(self) -> int:
         """Charts that learn from the next view, falling geometrically over their stage."""
-        share = min(1.0, max(0.0, (int(self.age) - self.begins("charts")) / (EPOCHS["charts"] * self.epoch)))
+        share = min(
+            1.0, max(0.0, (int(self.views_seen) - self.begins("charts")) / (EPOCHS["charts"] * self.epoch))
+        )
         first, last = WINNERS
         return round(float(first * (last / first) ** share))
 
-    def mature(self) -> None:
+    def advance_stage(self) -> None:
         """Fix what came before the present stage, once."""
-        while int(self.matured) < STAGES.index(self.stage):
-            self.matured += 1
-            entered = STAGES[int(self.matured)]
+        while int(self.stage_index) < STAGES.index(self.stage):
+            self.stage_index += 1
+            entered = STAGES[int(self.stage_index)]
             if entered == "olfaction":
                 self.charts.freeze()
-                self.recall.spacing = Atlas.of(self.charts.centres).spacing
+                self.readout.spacing = Atlas.of(self.charts.centres).spacing
             elif entered == "cells":
                 self._orient()
-                if self._doubt() and len(self.charts) < self.most_charts:
+                if self.atlas_diagnosis() and len(self.charts) < self.most_charts:
                     self._add_charts()
             elif entered == "afferents":
-                self.gauge.settle()
+                self.metric_map.solve()
                 edges = Atlas.of(self.charts.centres).edges
-                self.place.disambiguate(self.recall.intercepts, self.recall.phases, edges)
+                self.place.disambiguate(self.readout.intercepts, self.readout.phases, edges)
 
     def _orient(self) -> None:
         atlas = Atlas.of(self.charts.centres)
         intercepts, jacobians = self.olfaction.solve()
         axes = heading_axes(self.charts.tangents, jacobians, atlas)
         compass = None
-        with suppress(NeuronsError):  # no ring closes: `agreement` stays NaN, which `complain` tells
+        with suppress(NeuronsError):  # no ring closes: `agreement` stays NaN, which `diagnosis` tells
             compass = synchronise(self.charts.centres, axes, atlas)
             self.agreement = torch.tensor([compass.sign_agreement, compass.eigenvalue])
-        self.recall.settle(atlas, compass, intercepts, jacobians)
+        self.readout.solve(atlas, compass, intercepts, jacobians)
 
     def _add_charts(self) -> None:
         """Double the charts where they lie farthest apart, and go back to the stage in which they learn."""
@@ -198,9 +200,9 @@ class Layers(nn.Module):
         self.charts.grow(Atlas.of(self.charts.centres).edges, min(count, self.most_charts - count))
         count = len(self.charts)
         self.olfaction = Olfaction(count, odorants)
-        self.recall = Recall(count, self.charts.centres.shape[1], odorants)
+        self.readout = Readout(count, self.charts.centres.shape[1], odorants)
         self.place = PlaceCells(len(self.place.centres), count, odorants)
         self.heading.afferents = Afferents(count, len(self.heading.preferred))
         self.agreement.fill_(torch.nan)
-        self.matured.fill_(STAGES.index("charts"))
-        self.age.fill_(self.begins("charts"))
+        self.stage_index.fill_(STAGES.index("charts"))
+        self.views_seen.fill_(self.begins("charts"))

@@ -70,7 +70,7 @@ def competing_cells(
     with one_thread():
         for _ in range(EPOCHS["cells"]):
             for rows in torch.from_numpy(order.permutation(len(inputs))).split(BATCH):
-                layer.compete(inputs[rows], memory=float(len(inputs)))
+                layer.compete(inputs[rows], window=float(len(inputs)))
         return [layer.tuning(torch.from_numpy(np.asarray(some, np.float32))).numpy() for some in asked]
 
 

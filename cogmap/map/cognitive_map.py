@@ -24,7 +24,7 @@ from cogmap.threads import one_thread
 from neurons.errors import NeuronsError
 from neurons.layers.retina import Retina
 from neurons.merging import forked, merge
-from neurons.network import EPOCHS, IN_ORDER, Layers
+from neurons.network import EPOCHS, IN_ORDER, Network
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same map."""
@@ -96,7 +96,7 @@ class CognitiveMap:
     def fit(self, views: Any, odours: ArrayLike, *, progress: bool = False) -> CognitiveMap:
         """Learn a map from scratch, as epochs of `partial_fit` over the views.
 
-        Their order is random in every epoch but that of the gauge, which takes them as they are given.
+        Their order is random in every epoch but that of the metric map, which takes them as they are given.
 
         Parameters
         ----------
@@ -121,16 +121,16 @@ class CognitiveMap:
             strips = torch.cat([strip for _, strip in self._strips(views)])
             self.seconds_["retina"] = time.perf_counter() - started
             count = views.shape[0]
-            while int(self._layers.age) < sum(EPOCHS.values()) * count:
+            while int(self._network.views_seen) < sum(EPOCHS.values()) * count:
                 started = time.perf_counter()
-                self._layers.mature()
-                stage = self._layers.stage
+                self._network.advance_stage()
+                stage = self._network.stage
                 bar.set_description(stage)
                 epoch = np.arange(count) if stage == IN_ORDER else order.permutation(count)
                 for rows in torch.from_numpy(epoch).split(BATCH):
-                    self._layers.learn(strips[rows], smells[rows])
+                    self._network.learn(strips[rows], smells[rows])
                 self.seconds_[stage] = self.seconds_.get(stage, 0.0) + time.perf_counter() - started
-                bar.n = int(self._layers.age) // count
+                bar.n = int(self._network.views_seen) // count
                 bar.refresh()
         return self
 
@@ -147,7 +147,7 @@ class CognitiveMap:
         jump
             Whether these views do not follow the last ones, as where another walk begins.
         """
-        fresh = not hasattr(self, "_layers")
+        fresh = not hasattr(self, "_network")
         check_views(views, None if fresh else self.view_shape_)
         smells = torch.from_numpy(
             log_odours(odours, views=views.shape[0], odorants=None if fresh else self.odorants_)
@@ -155,17 +155,17 @@ class CognitiveMap:
         if fresh:
             self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=checked_count("epoch", self.epoch))
         if jump:
-            self._layers.gauge.jump()
+            self._network.metric_map.break_sequence()
         with one_thread():
             for rows, strip in self._strips(views):
-                self._layers.learn(strip, smells[rows])
+                self._network.learn(strip, smells[rows])
         return self
 
     def fork(self) -> CognitiveMap:
         """Give another explorer a map of the same charts, which has learnt nothing yet in the present stage.
 
         So what it learns is not what this one has learnt already, and `merge` adds it. Stages whose work can
-        be shared in this way are those of `neurons.merging.SUMS`: olfaction, gauge and afferents.
+        be shared in this way are those of `neurons.merging.SUMS`: olfaction, metric map and afferents.
 
         Raises
         ------
@@ -177,7 +177,7 @@ class CognitiveMap:
         other._retina, other.view_shape_, other.odorants_ = self._retina, self.view_shape_, self.odorants_
         other.seconds_ = {}
         with one_thread(), _at_the_edge():
-            other._layers = forked(self._layers)
+            other._network = forked(self._network)
         return other
 
     def merge(self, other: CognitiveMap) -> CognitiveMap:
@@ -206,7 +206,7 @@ class CognitiveMap:
         self._check_grown()
         other._check_grown()
         with one_thread(), _at_the_edge():
-            merge(self._layers, other._layers)
+            merge(self._network, other._network)
         return self
 
     def perceive(self, views: Any = None, *, odours: ArrayLike | None = None) -> Activity:
@@ -234,7 +234,7 @@ class CognitiveMap:
         self._check_grown()
         check_views(views, self.view_shape_)
         with one_thread():
-            return torch.cat([self._layers.code(strip) for _, strip in self._strips(views)]).numpy()
+            return torch.cat([self._network.code(strip) for _, strip in self._strips(views)]).numpy()
 
     @property
     def trusted_(self) -> bool:
@@ -245,19 +245,19 @@ class CognitiveMap:
     def reason_(self) -> str:
         """Why this map is not trusted; empty when it is."""
         self._check_grown()
-        return self._layers.complain()
+        return self._network.diagnosis()
 
     @property
     def metric_reason_(self) -> str:
         """Why this map tells no positions, whatever it tells of heading; empty when it does."""
         self._check_grown()
-        return self._layers.complain_of_metric()
+        return self._network.metric_diagnosis()
 
     @property
     def phase_eigenvalue_(self) -> float:
         """How well the charts agree on phase, 1 at best; NaN before they have tried."""
         self._check_grown()
-        return float(self._layers.agreement[1])
+        return float(self._network.agreement[1])
 
     def save(self, path: str | Path) -> None:
         """Write the map to a new folder: `weights.safetensors` and `map.json`.
@@ -271,10 +271,10 @@ class CognitiveMap:
         learnt = {
             "view_shape": self.view_shape_,
             "odorants": self.odorants_,
-            "epoch": self._layers.epoch,
-            "charts": len(self._layers.charts),
+            "epoch": self._network.epoch,
+            "charts": len(self._network.charts),
         }
-        write_map(Path(path), self._layers.state_dict(), self._settings(), learnt)
+        write_map(Path(path), self._network.state_dict(), self._settings(), learnt)
 
     @classmethod
     def load(cls, path: str | Path) -> CognitiveMap:
@@ -294,7 +294,7 @@ class CognitiveMap:
                 epoch=learnt["epoch"],
                 charts=learnt["charts"],
             )
-            loaded._layers.load_state_dict(weights)
+            loaded._network.load_state_dict(weights)
         except (KeyError, TypeError, RuntimeError) as error:
             raise CogmapError(f"{path} does not hold a whole map: {error}") from None
         return loaded
@@ -319,7 +319,7 @@ class CognitiveMap:
         self.view_shape_, self.odorants_ = view_shape, odorants
         self.seconds_: dict[str, float] = {}
         with one_thread():  # even the initial weights, orthonormal by QR, depend on the number of threads
-            self._layers = Layers(
+            self._network = Network(
                 self._retina.features,
                 odorants,
                 charts=first if charts is None else charts,
@@ -332,7 +332,7 @@ class CognitiveMap:
             )
 
     def _check_grown(self) -> None:
-        if not hasattr(self, "_layers"):
+        if not hasattr(self, "_network"):
             raise CogmapError("this map has learnt nothing yet; call fit or partial_fit first")
 
     def _strips(self, views: Any) -> Iterator[tuple[slice, Float[Tensor, "views features"]]]:
@@ -343,23 +343,23 @@ class CognitiveMap:
 
     def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, ...]:
         """Rates of both populations, heading, recalled odour and position."""
-        layers = self._layers
-        codes = layers.code(strips)
-        excited = layers.recall.excite(layers.charts, codes)
-        heading, odour = layers.recall(layers.charts, codes, excited)
-        position, offset = layers.gauge(layers.place, odour)
+        network = self._network
+        codes = network.code(strips)
+        excited = network.readout.excite(network.charts, codes)
+        heading, odour = network.readout(network.charts, codes, excited)
+        position, offset = network.metric_map(network.place, odour)
         angle = heading + offset
         phase = torch.atan2(angle.sin(), angle.cos())
-        return layers.place.afferents(excited), layers.heading.afferents(excited), phase, odour, position
+        return network.place.afferents(excited), network.heading.afferents(excited), phase, odour, position
 
     def _smell(self, odours: Float[Tensor, "views odorants"]) -> Activity:
         blind = np.full(len(odours), np.nan, np.float32)
         return Activity(
-            place=self._layers.place.tuning(odours).numpy(),
+            place=self._network.place.tuning(odours).numpy(),
             heading=np.repeat(blind[:, None], self.heading_cells, axis=1),
             phase=blind,
             odour=odours.numpy(),
-            position=self._layers.gauge(self._layers.place, odours).position.numpy(),
+            position=self._network.metric_map(self._network.place, odours).position.numpy(),
         )
 
 

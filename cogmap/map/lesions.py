@@ -29,7 +29,7 @@ def weights_of(cmap: CognitiveMap) -> dict[str, Tensor]:
         return read_map(Path(folder) / "map")[0]
 
 
-def operated(cmap: CognitiveMap, changed: Mapping[str, Tensor]) -> CognitiveMap:
+def with_state(cmap: CognitiveMap, changed: Mapping[str, Tensor]) -> CognitiveMap:
     """Copy a map, but for these weights."""
     with TemporaryDirectory() as folder:
         before, after = Path(folder) / "before", Path(folder) / "after"
@@ -39,18 +39,18 @@ def operated(cmap: CognitiveMap, changed: Mapping[str, Tensor]) -> CognitiveMap:
         return CognitiveMap.load(after)
 
 
-def newborn(cmap: CognitiveMap) -> CognitiveMap:
+def with_blank_afferents(cmap: CognitiveMap) -> CognitiveMap:
     """Copy a map whose cells hear nothing yet: their afferents from sight are as before any view."""
     weights = weights_of(cmap)
     names = [f"{cells}.afferents.{sums}" for cells in POPULATIONS for sums in SUMS]
-    return operated(cmap, {name: torch.zeros_like(weights[name]) for name in names})
+    return with_state(cmap, {name: torch.zeros_like(weights[name]) for name in names})
 
 
-def silenced(cmap: CognitiveMap, charts: Int[np.ndarray, "silent"]) -> CognitiveMap:
+def lesioned(cmap: CognitiveMap, charts: Int[np.ndarray, "silent"]) -> CognitiveMap:
     """Copy a map in which these charts are never active, and others take their place; nothing is relearnt."""
     centres = weights_of(cmap)["charts.centres"].clone()
     centres[torch.from_numpy(charts)] = FAR
-    return operated(cmap, {"charts.centres": centres})
+    return with_state(cmap, {"charts.centres": centres})
 
 
 def afferent_weights(cmap: CognitiveMap, cells: str) -> Float[np.ndarray, "charts cells"]:

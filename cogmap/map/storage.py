@@ -12,7 +12,7 @@ from torch import Tensor
 from cogmap.atomic import check_absent, whole
 from cogmap.errors import CogmapError
 
-VERSION = 2
+VERSION = 3
 _WEIGHTS, _SETTINGS = "weights.safetensors", "map.json"
 
 

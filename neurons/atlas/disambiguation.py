@@ -19,7 +19,7 @@ TURNED = 0.5
 """A group of which the mean heading vector is longer is a part of a place, where all headings are."""
 
 
-def branches(
+def place_branches(
     rates: Float[Tensor, "charts cells"], phases: Float[Tensor, "charts"], edges: Int[Tensor, "edges 2"]
 ) -> Bool[Tensor, "charts cells"]:
     """Say which charts a unit listens to: all, or those nearest to one place when its smell means several.

@@ -1,4 +1,4 @@
-"""The gauge of heading and a metric map, from the order of views alone: a body goes where it looks."""
+"""The metric map of places, and the compass's offset in each, from the order of views: bodies go ahead."""
 
 from typing import NamedTuple
 
@@ -18,14 +18,14 @@ ROUNDS = 100
 """Rounds of the power iteration, which changes nothing any more after about fifty."""
 BLOCK = 128
 """Consecutive displacements that fall to the same half of the evidence."""
-FORETOLD = 0.8
+LEAST_R2 = 0.8
 """Least share of the displacements of one half of a walk that the other half foretells, in a map worth
 having: .88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each other,
 whatever the headings do."""
 
 
-class Gauged(NamedTuple):
-    """What the gauge makes of smells."""
+class MetricReading(NamedTuple):
+    """What the metric map reads off smells."""
 
     position: Float[Tensor, "views 2"]
     """In the map's own frame, in steps from view to view; NaN before it is learnt."""
@@ -33,7 +33,7 @@ class Gauged(NamedTuple):
     """By how much the compass is to be corrected there, rad; 0 before it is learnt."""
 
 
-class Gauge(nn.Module):
+class MetricMap(nn.Module):
     """Places get positions, and the compass an offset at each, so that views follow each other ahead.
 
     The place cells share a smell o out as w(o), Σ w = 1. Each holds an affine map of its surroundings and an
@@ -49,7 +49,7 @@ class Gauge(nn.Module):
 
     again a synchronisation, of places connected by walking. The sums are kept for two halves of the walk,
     alternating; unless the map of either foretells the displacements of the other, nothing is learnt, and
-    `complain` says so. Sums can be added to by a stream and merged between maps of the same place cells; in
+    `diagnosis` says so. Sums can be added to by a stream and merged between maps of the same place cells; in
     double precision, as S⁻¹ makes much of little.
 
     Parameters
@@ -69,7 +69,7 @@ class Gauge(nn.Module):
     counted: Tensor
     seen: Tensor
     recent: Tensor
-    foretold: Tensor
+    cross_validated_r2: Tensor
     positions: Tensor
     offsets: Tensor
 
@@ -85,17 +85,17 @@ class Gauge(nn.Module):
             self.register_buffer(name, torch.zeros(2, *shape, dtype=torch.double))
         self.register_buffer("seen", torch.zeros((), dtype=torch.int64))
         self.register_buffer("recent", torch.full((LAG, odorants + 1), torch.nan))
-        self.register_buffer("foretold", torch.full((2,), torch.nan))
+        self.register_buffer("cross_validated_r2", torch.full((2,), torch.nan))
         self.register_buffer("positions", torch.full((features, 2), torch.nan))
         self.register_buffer("offsets", torch.zeros(cells))
 
-    def forward(self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]) -> Gauged:
+    def forward(self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]) -> MetricReading:
         """Tell the position of smells and the offset of the compass there."""
         share, patches = _patches(place, log_odours)
         turn = torch.atan2(share @ self.offsets.sin(), share @ self.offsets.cos())
-        return Gauged(patches @ self.positions, turn)
+        return MetricReading(patches @ self.positions, turn)
 
-    def jump(self) -> None:
+    def break_sequence(self) -> None:
         """Forget the last views: the next one does not follow them."""
         self.recent.fill_(torch.nan)
 
@@ -118,34 +118,36 @@ class Gauge(nn.Module):
             self.spread[number] += v.T @ v
             back = (w[:, :, None] * torch.view_as_real(u.conj().resolve_conj())[:, None]).movedim(2, 0)
             self.ahead[number] += (back.mT @ v).movedim(0, 2)
-            pace = u.abs().square()
-            self.shared[number] += w.T @ (pace[:, None] * w)
-            self.counted[number] += torch.stack([pace.sum(), mine.sum()])
+            power = u.abs().square()
+            self.shared[number] += w.T @ (power[:, None] * w)
+            self.counted[number] += torch.stack([power.sum(), mine.sum()])
 
-    def settle(self) -> None:
+    def solve(self) -> None:
         """Learn positions and offsets from the sums, if either half of the walk foretells the other."""
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
         if min(half.pairs for half in halves) < len(self.offsets):
             return
         one, other = halves
-        self.foretold = torch.tensor([one.foretold(*other.solve()), other.foretold(*one.solve())]).float()
-        if not self.complain():
+        self.cross_validated_r2 = torch.tensor(
+            [one.cross_validated_r2(*other.solve()), other.cross_validated_r2(*one.solve())]
+        ).float()
+        if not self.diagnosis():
             positions, turns = self._evidence(slice(0, 2)).solve()
             self.positions = torch.view_as_real(positions).float()
             self.offsets = turns.angle().float()
 
-    def complain(self) -> str:
+    def diagnosis(self) -> str:
         """Say why nothing is learnt, or nothing when it is."""
-        if self.foretold.isnan().any():
+        if self.cross_validated_r2.isnan().any():
             return (
                 f"{int(self.counted[:, 1].sum())} of {int(self.seen)} views were come to straight ahead, too "
                 "few for a metric map; show it longer walks, in order"
             )
-        share = float(self.foretold.min())
-        if share < FORETOLD:
+        share = float(self.cross_validated_r2.min())
+        if share < LEAST_R2:
             return (
                 f"one half of the walk foretells {share:.2f} of the displacements of the other, less than "
-                f"{FORETOLD}: what follows a view does not lie ahead of it; show it longer walks, in order"
+                f"{LEAST_R2}: what follows a view does not lie ahead of it; show it longer walks, in order"
             )
         return ""
 
@@ -181,7 +183,9 @@ class _Evidence(NamedTuple):
             turns = torch.sgn(agreement @ turns)
         return placing @ turns, turns
 
-    def foretold(self, positions: Complex[Tensor, "features"], turns: Complex[Tensor, "cells"]) -> float:
+    def cross_validated_r2(
+        self, positions: Complex[Tensor, "features"], turns: Complex[Tensor, "cells"]
+    ) -> float:
         """Share of Σ |u f|² that is left when Σ |v·β − u f|² is taken away, for β and f learnt elsewhere."""
         moved = (positions.conj() @ self.spread.to(torch.cdouble) @ positions).real
         looked = (turns.conj() @ self.shared.to(torch.cdouble) @ turns).real

@@ -4,7 +4,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
-from neurons.layers.readout import Excited
+from neurons.layers.readout import ChartActivity
 
 
 class Afferents(nn.Module):
@@ -33,14 +33,14 @@ class Afferents(nn.Module):
         """W in Hz; zero for charts that were never active."""
         return self.association / self.activity.clamp(min=1e-12)[:, None]
 
-    def partial_fit(self, excited: Excited, rates: Float[Tensor, "views cells"]) -> None:
+    def partial_fit(self, excited: ChartActivity, rates: Float[Tensor, "views cells"]) -> None:
         """Associate a batch of views with the rates (Hz) that an instructor demands."""
         chart, weight = excited
         self.activity.index_add_(0, chart.flatten(), weight.flatten())
         pairs = (weight[:, :, None] * rates[:, None]).flatten(0, 1)
         self.association.index_add_(0, chart.flatten(), pairs)
 
-    def forward(self, excited: Excited) -> Float[Tensor, "views cells"]:
+    def forward(self, excited: ChartActivity) -> Float[Tensor, "views cells"]:
         """Rates in Hz from chart activity alone."""
         chart, weight = excited
         norm = self.activity.clamp(min=1e-12)[chart]

@@ -10,7 +10,7 @@ DIMENSIONS = 3
 """Degrees of freedom of a body on the floor, hence tangents per chart."""
 
 
-class Excitation(NamedTuple):
+class NearestCharts(NamedTuple):
     """Which charts each view excites, and how strongly."""
 
     chart: Int[Tensor, "views winners"]
@@ -42,29 +42,29 @@ class Charts(nn.Module):
 
     centres: Tensor
     tangents: Tensor
-    mass: Tensor
+    responsibility: Tensor
     variances: Tensor
-    placed: Tensor
+    initialised: Tensor
 
     def __init__(self, charts: int, components: int, *, generator: torch.Generator) -> None:
         super().__init__()
         draws = torch.randn(charts, components, DIMENSIONS, generator=generator)
         self.register_buffer("centres", torch.zeros(charts, components))
         self.register_buffer("tangents", torch.linalg.qr(draws).Q.mT.contiguous())
-        self.register_buffer("mass", torch.zeros(charts))
+        self.register_buffer("responsibility", torch.zeros(charts))
         self.register_buffer("variances", torch.zeros(charts, DIMENSIONS))
-        self.register_buffer("placed", torch.zeros((), dtype=torch.int64))
+        self.register_buffer("initialised", torch.zeros((), dtype=torch.int64))
 
     def __len__(self) -> int:
         return len(self.centres)
 
-    def excite(self, codes: Float[Tensor, "views components"], winners: int) -> Excitation:
+    def excite(self, codes: Float[Tensor, "views components"], winners: int) -> NearestCharts:
         """Find the nearest centres of each code, nearest first."""
         squared = torch.addmm(self.centres.square().sum(dim=1), codes, self.centres.T, alpha=-2.0)
         nearest = squared.topk(min(winners, len(self)), dim=1, largest=False)
         # subtracting codes directly keeps the digits that |c|² − 2 z·c loses near a centre
         exact = (codes[:, None] - self.centres[nearest.indices]).square().sum(dim=2)
-        return Excitation(nearest.indices, exact)
+        return NearestCharts(nearest.indices, exact)
 
     def coordinates(
         self, codes: Float[Tensor, "views components"], chart: Int[Tensor, "views winners"]
@@ -73,18 +73,18 @@ class Charts(nn.Module):
         residual = codes[:, None] - self.centres[chart]
         return torch.einsum("nwdc,nwc->nwd", self.tangents[chart], residual)
 
-    def partial_fit(self, codes: Float[Tensor, "views components"], *, winners: int, memory: float) -> None:
+    def partial_fit(self, codes: Float[Tensor, "views components"], *, winners: int, window: float) -> None:
         """Let a batch of codes compete.
 
         The first K codes ever seen, over as many batches as it takes, become the centres; the rest compete.
-        `winners` is m; `memory` is how many views a centre remembers when it averages.
+        `winners` is m; `window` is how many views a centre remembers when it averages.
         """
-        placed = int(self.placed)
-        fresh, rest = codes[: len(self) - placed], codes[len(self) - placed :]
-        self.centres[placed : placed + len(fresh)] = fresh
-        self.placed += len(fresh)
+        initialised = int(self.initialised)
+        fresh, rest = codes[: len(self) - initialised], codes[len(self) - initialised :]
+        self.centres[initialised : initialised + len(fresh)] = fresh
+        self.initialised += len(fresh)
         if len(rest):
-            self._compete(rest, winners=winners, memory=memory)
+            self._compete(rest, winners=winners, window=window)
 
     def grow(self, overlapping: Int[Tensor, "edges 2"], count: int) -> None:
         """Add so many charts, halfway between those of the given pairs that lie farthest apart."""
@@ -94,17 +94,17 @@ class Charts(nn.Module):
         one, other = one[longest], other[longest]
         self.centres = torch.cat([self.centres, (self.centres[one] + self.centres[other]) / 2])
         self.tangents = torch.cat([self.tangents, self.tangents[one]])
-        self.mass = torch.cat([self.mass, torch.zeros(len(longest))])
+        self.responsibility = torch.cat([self.responsibility, torch.zeros(len(longest))])
         self.variances = torch.cat([self.variances, torch.zeros(len(longest), DIMENSIONS)])
-        self.placed.fill_(len(self.centres))
+        self.initialised.fill_(len(self.centres))
 
-    def _compete(self, codes: Float[Tensor, "views components"], *, winners: int, memory: float) -> None:
+    def _compete(self, codes: Float[Tensor, "views components"], *, winners: int, window: float) -> None:
         chart = self.excite(codes, winners).chart
         h = torch.exp(-2.0 * torch.arange(chart.shape[1]) / chart.shape[1])
         flat, weight = chart.flatten(), h.repeat(len(codes))
-        self.mass *= max(0.0, 1 - len(codes) / memory)
-        self.mass.index_add_(0, flat, weight)
-        rate = 1 / self.mass.clamp(min=1e-6)
+        self.responsibility *= max(0.0, 1 - len(codes) / window)
+        self.responsibility.index_add_(0, flat, weight)
+        rate = 1 / self.responsibility.clamp(min=1e-6)
         residual = (codes[:, None] - self.centres[chart]).flatten(0, 1)
         y = torch.einsum("ndc,nc->nd", self.tangents[flat], residual)
         shift = torch.zeros_like(self.centres).index_add_(0, flat, weight[:, None] * residual)
@@ -114,7 +114,7 @@ class Charts(nn.Module):
         cross = torch.zeros(len(self), DIMENSIONS, DIMENSIONS).index_add_(
             0, flat, weight[:, None, None] * y[:, :, None] * y[:, None]
         )
-        fed = torch.zeros_like(self.mass).index_add_(0, flat, weight)
+        fed = torch.zeros_like(self.responsibility).index_add_(0, flat, weight)
         self.centres += rate[:, None] * shift
         drive = self.variances[:, :, None] * self.tangents
         decay = torch.tril(cross, diagonal=-1) @ self.tangents

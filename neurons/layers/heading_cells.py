@@ -29,23 +29,23 @@ class HeadDirectionCells(nn.Module):
     """
 
     preferred: Tensor
-    mass: Tensor
+    responsibility: Tensor
 
     def __init__(self, cells: int, charts: int, *, generator: torch.Generator) -> None:
         super().__init__()
         self.register_buffer("preferred", 2 * torch.pi * torch.rand(cells, generator=generator) - torch.pi)
-        self.register_buffer("mass", torch.zeros(cells))
+        self.register_buffer("responsibility", torch.zeros(cells))
         self.afferents = Afferents(charts, cells)
 
-    def compete(self, headings: Float[Tensor, "views"], *, memory: float) -> None:
-        """Learn from a batch of headings (rad); `memory` is in views."""
+    def compete(self, headings: Float[Tensor, "views"], *, window: float) -> None:
+        """Learn from a batch of headings (rad); `window` is in views."""
         apart = _wrapped(headings[:, None] - self.preferred)
         unit = apart.abs().topk(min(WINNERS, len(self.preferred)), dim=1, largest=False).indices
         flat = unit.flatten()
-        self.mass *= max(0.0, 1 - len(headings) / memory)
-        self.mass.index_add_(0, flat, torch.ones(len(flat)))
-        pull = torch.zeros_like(self.mass).index_add_(0, flat, apart.gather(1, unit).flatten())
-        self.preferred = _wrapped(self.preferred + pull / self.mass.clamp(min=1e-6))
+        self.responsibility *= max(0.0, 1 - len(headings) / window)
+        self.responsibility.index_add_(0, flat, torch.ones(len(flat)))
+        pull = torch.zeros_like(self.responsibility).index_add_(0, flat, apart.gather(1, unit).flatten())
+        self.preferred = _wrapped(self.preferred + pull / self.responsibility.clamp(min=1e-6))
 
     def tuning(self, headings: Float[Tensor, "views"]) -> Float[Tensor, "views cells"]:
         """Rates in Hz that a heading demands."""

@@ -6,9 +6,9 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from neurons.atlas.disambiguation import branches
+from neurons.atlas.disambiguation import place_branches
 from neurons.layers.afferents import Afferents
-from neurons.layers.readout import Excited
+from neurons.layers.readout import ChartActivity
 
 PEAK = 20.0
 """Rate of a cell at the middle of its field, Hz."""
@@ -43,27 +43,27 @@ class PlaceCells(nn.Module):
 
     centres: Tensor
     covariances: Tensor
-    mass: Tensor
-    placed: Tensor
+    responsibility: Tensor
+    initialised: Tensor
     branches: Tensor
 
     def __init__(self, cells: int, charts: int, odorants: int) -> None:
         super().__init__()
         self.register_buffer("centres", torch.zeros(cells, odorants))
         self.register_buffer("covariances", torch.eye(odorants).repeat(cells, 1, 1))
-        self.register_buffer("mass", torch.zeros(cells))
-        self.register_buffer("placed", torch.zeros((), dtype=torch.int64))
+        self.register_buffer("responsibility", torch.zeros(cells))
+        self.register_buffer("initialised", torch.zeros((), dtype=torch.int64))
         self.register_buffer("branches", torch.ones(charts, cells, dtype=torch.bool))
         self.afferents = Afferents(charts, cells)
 
-    def compete(self, log_odours: Float[Tensor, "views odorants"], *, memory: float) -> None:
-        """Learn from a batch of smells; the first smells become the centres, `memory` is in views."""
+    def compete(self, log_odours: Float[Tensor, "views odorants"], *, window: float) -> None:
+        """Learn from a batch of smells; the first smells become the centres, `window` is in views."""
         cells = len(self.centres)
-        placed = int(self.placed)
-        if placed < cells:
-            fresh = log_odours[: cells - placed]
-            self.centres[placed : placed + len(fresh)] = fresh
-            self.placed += len(fresh)
+        initialised = int(self.initialised)
+        if initialised < cells:
+            fresh = log_odours[: cells - initialised]
+            self.centres[initialised : initialised + len(fresh)] = fresh
+            self.initialised += len(fresh)
             log_odours = log_odours[len(fresh) :]
         if not len(log_odours):
             return
@@ -71,11 +71,11 @@ class PlaceCells(nn.Module):
         unit = distance.topk(min(WINNERS, cells), dim=1, largest=False).indices
         deviation = log_odours[:, None] - self.centres[unit]
         flat = unit.flatten()
-        self.mass *= max(0.0, 1 - len(log_odours) / memory)
-        self.mass.index_add_(0, flat, torch.ones(len(flat)))
-        rate = 1 / self.mass.clamp(min=1e-6)
+        self.responsibility *= max(0.0, 1 - len(log_odours) / window)
+        self.responsibility.index_add_(0, flat, torch.ones(len(flat)))
+        rate = 1 / self.responsibility.clamp(min=1e-6)
         spread = (deviation[..., None] * deviation[:, :, None]).flatten(0, 1)
-        fed = torch.zeros_like(self.mass).index_add_(0, flat, torch.ones(len(flat)))
+        fed = torch.zeros_like(self.responsibility).index_add_(0, flat, torch.ones(len(flat)))
         drawn = torch.zeros_like(self.covariances).index_add_(0, flat, spread)
         self.covariances += rate[:, None, None] * (drawn - fed[:, None, None] * self.covariances)
         shift = torch.zeros_like(self.centres).index_add_(0, flat, deviation.flatten(0, 1))
@@ -88,10 +88,10 @@ class PlaceCells(nn.Module):
         edges: Int[Tensor, "edges 2"],
     ) -> None:
         """Let each unit keep to one place, given the charts' log odours, headings (rad) and overlaps."""
-        self.branches = branches(self.tuning(smells), phases, edges)
+        self.branches = place_branches(self.tuning(smells), phases, edges)
 
     def instruct(
-        self, excited: Excited, log_odours: Float[Tensor, "views odorants"]
+        self, excited: ChartActivity, log_odours: Float[Tensor, "views odorants"]
     ) -> Float[Tensor, "views cells"]:
         """Rates in Hz that a smell demands as far as the excited charts are those of the unit's place."""
         here = torch.einsum("nw,nwc->nc", excited.weight, self.branches[excited.chart].float())

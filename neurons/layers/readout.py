@@ -1,4 +1,4 @@
-"""What a frozen atlas says of a view: where it smells, and which way it faces."""
+"""The readout of a frozen atlas: what it says of a view's smell, and of which way it faces."""
 
 from typing import NamedTuple
 
@@ -16,7 +16,7 @@ BREADTH = 0.7
 """Width of a chart's receptive field, in units of its spacing."""
 
 
-class Excited(NamedTuple):
+class ChartActivity(NamedTuple):
     """Normalised activity of the charts that a view excites."""
 
     chart: Int[Tensor, "views winners"]
@@ -24,7 +24,7 @@ class Excited(NamedTuple):
     """Sums to one over the winners."""
 
 
-class Recall(nn.Module):
+class Readout(nn.Module):
     """Reads heading and odour off the charts that a view excites.
 
     A view z excites its nearest charts with weights w ∝ exp(−|z − C_k|² / 2 h_k²), h_k a fraction of the
@@ -47,7 +47,7 @@ class Recall(nn.Module):
         self.register_buffer("intercepts", torch.full((charts, odorants), torch.nan))
         self.register_buffer("jacobians", torch.full((charts, DIMENSIONS, odorants), torch.nan))
 
-    def settle(
+    def solve(
         self,
         atlas: Atlas,
         compass: Compass | None,
@@ -60,15 +60,15 @@ class Recall(nn.Module):
         if compass is not None:
             self.phases, self.turning = compass.phases, compass.scale * compass.axes
 
-    def excite(self, charts: Charts, codes: Float[Tensor, "views components"]) -> Excited:
+    def excite(self, charts: Charts, codes: Float[Tensor, "views components"]) -> ChartActivity:
         """Activity of the nearest charts."""
         nearest = charts.excite(codes, WINNERS)
         width = BREADTH * self.spacing[nearest.chart]
         weight = torch.softmax(-0.5 * nearest.squared_distance / width**2, dim=1)
-        return Excited(nearest.chart, weight)
+        return ChartActivity(nearest.chart, weight)
 
     def forward(
-        self, charts: Charts, codes: Float[Tensor, "views components"], excited: Excited
+        self, charts: Charts, codes: Float[Tensor, "views components"], excited: ChartActivity
     ) -> tuple[Float[Tensor, "views"], Float[Tensor, "views odorants"]]:
         """Heading in the map's own frame (rad) and recalled log odour."""
         chart, weight = excited

@@ -8,7 +8,7 @@ from torch import Tensor
 
 from neurons.errors import NeuronsError
 from neurons.merging import OWN, SUMS, forked, merge
-from neurons.network import EPOCHS, STAGES, Layers
+from neurons.network import EPOCHS, STAGES, Network
 
 EPOCH = 400
 Views = tuple[Tensor, Tensor]
@@ -23,13 +23,13 @@ def stream(count: int, seed: int) -> Views:
     return core @ mixing.T, torch.column_stack([core[:, :2], core[:, 0] + core[:, 1]])
 
 
-def learn(layers: Layers, views: Views) -> None:
+def learn(network: Network, views: Views) -> None:
     strips, smells = views
     for some in range(0, len(strips), 50):
-        layers.learn(strips[some : some + 50], smells[some : some + 50])
+        network.learn(strips[some : some + 50], smells[some : some + 50])
 
 
-def young(**sizes: int) -> Layers:
+def young(**sizes: int) -> Network:
     usual = {
         "charts": 60,
         "most_charts": 60,
@@ -38,21 +38,24 @@ def young(**sizes: int) -> Layers:
         "heading_cells": 6,
         "epoch": EPOCH,
     }
-    return Layers(30, 3, **{**usual, **sizes}, generator=torch.Generator().manual_seed(0))
+    return Network(30, 3, **{**usual, **sizes}, generator=torch.Generator().manual_seed(0))
 
 
 @pytest.fixture(scope="module")
-def begun() -> dict[str, Layers]:
+def begun() -> dict[str, Network]:
     """Layers with two batches behind them in each stage."""
-    found, layers = {}, young()
+    found, network = {}, young()
     for number, stage in enumerate(STAGES):
-        learn(layers, stream(layers.begins(stage) - int(layers.age), number) if number else stream(0, 0))
-        learn(layers, stream(100, 100 + number))
-        found[stage] = deepcopy(layers)
+        learn(
+            network,
+            stream(network.begins(stage) - int(network.views_seen), number) if number else stream(0, 0),
+        )
+        learn(network, stream(100, 100 + number))
+        found[stage] = deepcopy(network)
     return found
 
 
-def differing(one: Layers, other: Layers, tolerance: float = 0.0) -> set[str]:
+def differing(one: Network, other: Network, tolerance: float = 0.0) -> set[str]:
     """Names of what differs by more than a fraction of its largest value."""
     names, its = set(), other.state_dict()
     for name, value in one.state_dict().items():
@@ -65,19 +68,19 @@ def differing(one: Layers, other: Layers, tolerance: float = 0.0) -> set[str]:
 @pytest.mark.parametrize("stage", SUMS)
 @settings(deadline=None, max_examples=10)
 @given(split=st.integers(0, 150), seed=st.integers(0, 99))
-def test_halves_are_the_whole(begun: dict[str, Layers], stage: str, split: int, seed: int) -> None:
+def test_halves_are_the_whole(begun: dict[str, Network], stage: str, split: int, seed: int) -> None:
     strips, smells = stream(150, seed)
     whole = deepcopy(begun[stage])
     merged, *halves = (forked(whole), forked(whole), forked(whole))
     merge(merged, whole)
     for part, half in zip((slice(split), slice(split, None)), halves, strict=True):
-        whole.gauge.jump()
+        whole.metric_map.break_sequence()
         learn(whole, (strips[part], smells[part]))
         learn(half, (strips[part], smells[part]))
         merge(merged, half)
-    # which half of the evidence of the gauge a view falls to depends on how many came before
-    apart = {"gauge.spread", "gauge.ahead", "gauge.shared", "gauge.counted"}
-    assert differing(whole, merged, 1e-5) <= {"gauge.recent", *apart}
+    # which half of the evidence of the metric map a view falls to depends on how many came before
+    apart = {"metric_map.spread", "metric_map.ahead", "metric_map.shared", "metric_map.counted"}
+    assert differing(whole, merged, 1e-5) <= {"metric_map.recent", *apart}
     for name in apart:
         one, other = (each.get_buffer(name).sum(dim=0) for each in (whole, merged))
         torch.testing.assert_close(one, other, atol=1e-9, rtol=1e-5)
@@ -87,39 +90,42 @@ def test_halves_are_the_whole(begun: dict[str, Layers], stage: str, split: int, 
 @settings(deadline=None, max_examples=10)
 @given(views=st.tuples(st.integers(0, 500), st.integers(0, 500)))
 def test_commutative_and_nothing_adds_nothing(
-    begun: dict[str, Layers], stage: str, views: tuple[int, int]
+    begun: dict[str, Network], stage: str, views: tuple[int, int]
 ) -> None:
     one, other = forked(begun[stage]), forked(begun[stage])
-    ages = [each.age.clone() for each in (one, other)]
+    ages = [each.views_seen.clone() for each in (one, other)]
     for each, count, seed in zip((one, other), views, (1, 2), strict=True):
         learn(each, stream(min(count, EPOCHS[stage] * EPOCH), seed))
     left, right = deepcopy(one), deepcopy(other)
     merge(left, other)
     merge(right, one)
-    assert differing(left, right) <= {"gauge.recent"}
-    assert one.gauge.recent.equal(left.gauge.recent) or one.gauge.recent.isnan().any()
+    assert differing(left, right) <= {"metric_map.recent"}
+    assert one.metric_map.recent.equal(left.metric_map.recent) or one.metric_map.recent.isnan().any()
     unchanged = deepcopy(left)
     merge(unchanged, forked(begun[stage]))
     assert not differing(unchanged, left)
     assert ages == [begun[stage].begins(stage)] * 2
-    assert left.gauge.seen == one.gauge.seen + other.gauge.seen - (stage == "afferents") * one.gauge.seen
+    assert (
+        left.metric_map.seen
+        == one.metric_map.seen + other.metric_map.seen - (stage == "afferents") * one.metric_map.seen
+    )
 
 
 @pytest.mark.parametrize("stage", SUMS)
 def test_a_fork_has_learnt_nothing_of_its_stage_and_the_rest_as_well(
-    begun: dict[str, Layers], stage: str
+    begun: dict[str, Network], stage: str
 ) -> None:
-    layers = deepcopy(begun[stage])
-    fork = forked(layers)
-    assert not differing(layers, begun[stage])
-    assert differing(fork, layers) <= {*SUMS[stage], *OWN}
+    network = deepcopy(begun[stage])
+    fork = forked(network)
+    assert not differing(network, begun[stage])
+    assert differing(fork, network) <= {*SUMS[stage], *OWN}
     assert all(not fork.get_buffer(name).any() for name in SUMS[stage])
-    assert fork.gauge.recent.isnan().all()
-    assert fork.age == layers.begins(stage)
+    assert fork.metric_map.recent.isnan().all()
+    assert fork.views_seen == network.begins(stage)
     assert fork.stage == stage
 
 
-def test_many_views_end_a_stage_but_no_other(begun: dict[str, Layers]) -> None:
+def test_many_views_end_a_stage_but_no_other(begun: dict[str, Network]) -> None:
     crowd = [forked(begun["olfaction"]) for _ in range(4)]
     for seed, each in enumerate(crowd):
         learn(each, stream(EPOCH, seed))
@@ -127,27 +133,27 @@ def test_many_views_end_a_stage_but_no_other(begun: dict[str, Layers]) -> None:
     first, *others = crowd
     for each in others:
         merge(first, each)
-    assert first.age == first.begins("cells")
+    assert first.views_seen == first.begins("cells")
     endless = [forked(begun["afferents"]) for _ in range(4)]
     for each in endless:
         learn(each, stream(EPOCH, 0))
         merge(endless[0], each) if each is not endless[0] else None
-    assert endless[0].age == first.begins("afferents") + 4 * EPOCH
+    assert endless[0].views_seen == first.begins("afferents") + 4 * EPOCH
 
 
-def test_what_cannot_be_added_up_is_refused(begun: dict[str, Layers]) -> None:
+def test_what_cannot_be_added_up_is_refused(begun: dict[str, Network]) -> None:
     for stage in set(STAGES) - set(SUMS):
         with pytest.raises(NeuronsError, match=f"'{stage}' stage, in which units compete"):
             forked(begun[stage])
         with pytest.raises(NeuronsError, match="units compete"):
             merge(deepcopy(begun[stage]), begun[stage])
     smelling = deepcopy(begun["olfaction"])
-    with pytest.raises(NeuronsError, match="'olfaction' stage and the other in its 'gauge'"):
-        merge(smelling, begun["gauge"])
+    with pytest.raises(NeuronsError, match="'olfaction' stage and the other in its 'metric_map'"):
+        merge(smelling, begun["metric_map"])
     for sizes in ({"charts": 61}, {"place_cells": 11}, {"epoch": 401}):
         with pytest.raises(NeuronsError, match="differ in views, odorants"):
             merge(deepcopy(smelling), young(**sizes))
-    for name in ("charts.centres", "code.weight", "recall.spacing"):
+    for name in ("charts.centres", "code.weight", "readout.spacing"):
         other = deepcopy(smelling)
         other.get_buffer(name)[-1].mul_(1.001)
         with pytest.raises(NeuronsError, match=f"same charts: {name} differs"):
@@ -155,11 +161,11 @@ def test_what_cannot_be_added_up_is_refused(begun: dict[str, Layers]) -> None:
     assert not differing(smelling, begun["olfaction"])
 
 
-def test_copies_made_where_a_stage_begins_merge_with_or_without_views(begun: dict[str, Layers]) -> None:
+def test_copies_made_where_a_stage_begins_merge_with_or_without_views(begun: dict[str, Network]) -> None:
     fresh = deepcopy(begun["charts"])
-    learn(fresh, stream(fresh.begins("olfaction") - int(fresh.age), 5))
+    learn(fresh, stream(fresh.begins("olfaction") - int(fresh.views_seen), 5))
     other = deepcopy(fresh)
     learn(other, stream(100, 6))
     idle = deepcopy(fresh)
     merge(idle, other)
-    assert differing(idle, other) <= {"gauge.recent"}
+    assert differing(idle, other) <= {"metric_map.recent"}

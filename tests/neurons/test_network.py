@@ -1,14 +1,14 @@
 import pytest
 import torch
 
-from neurons.network import EPOCHS, STAGES, WINNERS, Layers
+from neurons.network import EPOCHS, STAGES, WINNERS, Network
 
 EPOCH = 400
 
 
 @pytest.fixture
-def layers() -> Layers:
-    return Layers(
+def network() -> Network:
+    return Network(
         30,
         3,
         charts=60,
@@ -31,36 +31,36 @@ def stream(count: int, seed: int) -> tuple[torch.Tensor, torch.Tensor]:
     return core @ mixing.T, torch.column_stack([place, place.sum(dim=1)])
 
 
-def test_each_layer_learns_in_its_own_period_and_is_then_fixed(layers: Layers) -> None:
+def test_each_layer_learns_in_its_own_period_and_is_then_fixed(network: Network) -> None:
     own = {
         "code": "code.",
         "charts": "charts.",
         "olfaction": "olfaction.",
         "cells": ("place.", "heading."),
-        "gauge": "gauge.",
+        "metric_map": "metric_map.",
         "afferents": ("place.afferents.", "heading.afferents."),
     }
     for number, stage in enumerate(STAGES):
-        assert layers.stage == stage
-        layers.learn(*stream(50, number))  # what came before is settled with the first views of a stage
-        before = {name: value.clone() for name, value in layers.state_dict().items()}
+        assert network.stage == stage
+        network.learn(*stream(50, number))  # what came before is settled with the first views of a stage
+        before = {name: value.clone() for name, value in network.state_dict().items()}
         for batch in range(EPOCHS[stage] * EPOCH // 50 - 1):
-            layers.learn(*stream(50, 100 * number + batch))
+            network.learn(*stream(50, 100 * number + batch))
         changed = {
             name
-            for name, value in layers.state_dict().items()
+            for name, value in network.state_dict().items()
             if not torch.equal(value.nan_to_num(), before[name].nan_to_num())
         }
-        assert changed - {"age"}
-        assert all(name.startswith(own[stage]) for name in changed - {"age"})
+        assert changed - {"views_seen"}
+        assert all(name.startswith(own[stage]) for name in changed - {"views_seen"})
 
 
-def test_fewer_and_fewer_charts_learn_from_a_view(layers: Layers) -> None:
+def test_fewer_and_fewer_charts_learn_from_a_view(network: Network) -> None:
     begun, lasts = EPOCHS["code"] * EPOCH, EPOCHS["charts"] * EPOCH
     winners = []
     for share in (0, 0.25, 0.5, 0.75, 1):
-        layers.age.fill_(begun + int(share * lasts))
-        winners.append(layers._winners())
+        network.views_seen.fill_(begun + int(share * lasts))
+        winners.append(network._winners())
     assert (winners[0], winners[-1]) == WINNERS
     assert winners == sorted(winners, reverse=True)
 
@@ -74,43 +74,43 @@ def test_fewer_and_fewer_charts_learn_from_a_view(layers: Layers) -> None:
         (1.0, 0.9999, ""),
     ],
 )
-def test_complaints(layers: Layers, signs: float, phases: float, said: str) -> None:
-    layers.age.fill_(sum(EPOCHS.values()) * EPOCH)
-    layers.agreement = torch.tensor([signs, phases])
-    first_error = layers.complain()
-    assert said in first_error
-    assert bool(first_error) == bool(said)
+def test_complaints(network: Network, signs: float, phases: float, said: str) -> None:
+    network.views_seen.fill_(sum(EPOCHS.values()) * EPOCH)
+    network.agreement = torch.tensor([signs, phases])
+    reason = network.diagnosis()
+    assert said in reason
+    assert bool(reason) == bool(said)
 
 
 @pytest.mark.parametrize(("most", "charts"), [(100, 100), (500, 120), (60, 60)])
 @pytest.mark.parametrize("better", [False, True])
 def test_charts_are_added_while_they_do_not_agree(
-    layers: Layers, monkeypatch: pytest.MonkeyPatch, most: int, charts: int, *, better: bool
+    network: Network, monkeypatch: pytest.MonkeyPatch, most: int, charts: int, *, better: bool
 ) -> None:
     found = torch.tensor([1.0, 0.9999 if better else 0.99])
-    orient = Layers._orient
+    orient = Network._orient
 
-    def disagree(self: Layers) -> None:
+    def disagree(self: Network) -> None:
         orient(self)
         self.agreement = found.clone()
 
-    monkeypatch.setattr(Layers, "_orient", disagree)
-    layers.most_charts = most
-    while layers.stage != "cells":
-        layers.learn(*stream(50, int(layers.age)))
-    grown = layers.age.clone()
-    layers.learn(*stream(50, 1))
+    monkeypatch.setattr(Network, "_orient", disagree)
+    network.most_charts = most
+    while network.stage != "cells":
+        network.learn(*stream(50, int(network.views_seen)))
+    grown = network.views_seen.clone()
+    network.learn(*stream(50, 1))
     if better or charts == 60:
-        assert len(layers.charts) == 60
-        assert (layers.stage, int(layers.age)) == ("cells", int(grown) + 50)
+        assert len(network.charts) == 60
+        assert (network.stage, int(network.views_seen)) == ("cells", int(grown) + 50)
         return
-    assert len(layers.charts) == charts
-    assert (layers.stage, int(layers.age)) == ("charts", layers.begins("charts") + 50)
-    assert STAGES[int(layers.matured)] == "charts"
-    assert layers.agreement.isnan().all()
+    assert len(network.charts) == charts
+    assert (network.stage, int(network.views_seen)) == ("charts", network.begins("charts") + 50)
+    assert STAGES[int(network.stage_index)] == "charts"
+    assert network.agreement.isnan().all()
     found[1] = 0.9999
-    while layers.age < layers.begins("afferents") + 100:
-        layers.learn(*stream(50, int(layers.age)))
-    assert len(layers.charts) == charts
-    assert layers.complain() == ""
-    assert {len(layers.place.afferents.weights), len(layers.heading.afferents.weights)} == {charts}
+    while network.views_seen < network.begins("afferents") + 100:
+        network.learn(*stream(50, int(network.views_seen)))
+    assert len(network.charts) == charts
+    assert network.diagnosis() == ""
+    assert {len(network.place.afferents.weights), len(network.heading.afferents.weights)} == {charts}

@@ -17,7 +17,7 @@ from cogmap.evaluation.populations import Ground, as_one_table, grow_map, percei
 from cogmap.experiments.conditions import Setting, poses_of
 from cogmap.experiments.result import Result
 from cogmap.map.cognitive_map import CognitiveMap
-from cogmap.map.lesions import afferent_weights, newborn, silenced, weights_of
+from cogmap.map.lesions import afferent_weights, lesioned, weights_of, with_blank_afferents
 from cogmap.plots import plot_afferents, plot_courses
 from neurons.layers.heading_cells import HeadDirectionCells
 
@@ -68,7 +68,7 @@ def neurons(setting: Setting) -> Result:
     ground = Ground.of(setting.room, poses_of(walk)[::step], poses_of(fresh))
     views = np.asarray(walk.views[::step]), fresh.views
 
-    growing, growth, begun = newborn(cmap), [], 0
+    growing, growth, begun = with_blank_afferents(cmap), [], 0
     for seen in [*(count for count in SEEN if count < len(walk)), len(walk)]:
         growing.partial_fit(walk.views[begun:seen], walk.odours[begun:seen])
         begun = seen
@@ -77,7 +77,7 @@ def neurons(setting: Setting) -> Result:
     silencing = [
         {
             "silent": share,
-            **_figures(ground, _driven(silenced(cmap, order[: round(share * len(order))]), views)),
+            **_figures(ground, _driven(lesioned(cmap, order[: round(share * len(order))]), views)),
         }
         for share in SILENT
     ]

@@ -37,7 +37,7 @@ def walks(setting: Setting) -> Result:
     """Learn the same room on four walks, by slowness and by smell.
 
     Slow feature analysis takes the Sanger codes of the views in their order; the fusion takes views and
-    smells, and notices order only for its metric map and the gauge of its compass. Each is measured on a
+    smells, and notices order only for its metric map and the offset of its compass. Each is measured on a
     fresh walk: brownian, but in the corridor where nothing else has been seen. `position_median_m` of slow
     features is read from them by the same decoder. The same cells of slow features are judged as place cells
     and as head-direction cells.

@@ -15,12 +15,12 @@ from neurons.merging import SUMS
 from neurons.network import EPOCHS, IN_ORDER
 
 SHARED = 2000
-GAUGE_BEGINS = sum(list(EPOCHS.values())[: list(EPOCHS).index(IN_ORDER)])
+METRIC_MAP_BEGINS = sum(list(EPOCHS.values())[: list(EPOCHS).index(IN_ORDER)])
 Grow = Callable[..., CognitiveMap]
 
 
 def same(a: CognitiveMap, b: CognitiveMap) -> bool:
-    one, other = a._layers.state_dict(), b._layers.state_dict()
+    one, other = a._network.state_dict(), b._network.state_dict()
     return one.keys() == other.keys() and all(
         torch.equal(one[name].nan_to_num(), other[name].nan_to_num()) for name in one
     )
@@ -139,10 +139,10 @@ def test_order_teaches_a_metric_map_and_shuffled_views_do_no_harm(
 def test_views_that_do_not_follow_can_be_told(walk: Recording, cmap: CognitiveMap) -> None:
     grown = copy.deepcopy(cmap)
     for jump in (False, True):
-        grown._layers.age.fill_(GAUGE_BEGINS * grown._layers.epoch)
+        grown._network.views_seen.fill_(METRIC_MAP_BEGINS * grown._network.epoch)
         grown.partial_fit(walk.views[:20], walk.odours[:20], jump=True)
         grown.partial_fit(walk.views[20:21], walk.odours[20:21], jump=jump)
-        assert grown._layers.gauge.recent.isnan().any() == jump
+        assert grown._network.metric_map.recent.isnan().any() == jump
 
 
 def test_a_coarse_map_says_so(walk: Recording) -> None:
@@ -156,7 +156,7 @@ def test_a_coarse_map_says_so(walk: Recording) -> None:
 def test_a_coarse_map_adds_charts_until_they_agree(walk: Recording, tmp_path: Path) -> None:
     grown = CognitiveMap(charts=100, components=40, most_charts=1000).fit(walk.views, walk.odours)
     assert grown.trusted_, grown.reason_
-    assert len(grown._layers.charts) in {200, 400, 800}
+    assert len(grown._network.charts) in {200, 400, 800}
     grown.save(tmp_path / "map")
     loaded = CognitiveMap.load(tmp_path / "map")
     assert loaded.most_charts == 1000

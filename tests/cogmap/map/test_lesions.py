@@ -4,12 +4,12 @@ import torch
 
 from arena import Recording
 from cogmap import CognitiveMap
-from cogmap.map.lesions import afferent_weights, newborn, operated, silenced, weights_of
-from neurons.layers.readout import Excited
+from cogmap.map.lesions import afferent_weights, lesioned, weights_of, with_blank_afferents, with_state
+from neurons.layers.readout import ChartActivity
 
 
 def test_nothing_changed_is_the_same_map(cmap: CognitiveMap, walk: Recording) -> None:
-    same = operated(cmap, {})
+    same = with_state(cmap, {})
     for one, other in zip(
         vars(cmap.perceive(walk.views[:50])).values(),
         vars(same.perceive(walk.views[:50])).values(),
@@ -19,7 +19,7 @@ def test_nothing_changed_is_the_same_map(cmap: CognitiveMap, walk: Recording) ->
 
 
 def test_a_newborn_remembers_all_but_its_cells_hear_nothing(cmap: CognitiveMap, walk: Recording) -> None:
-    known, blank = (some.perceive(walk.views[:50]) for some in (cmap, newborn(cmap)))
+    known, blank = (some.perceive(walk.views[:50]) for some in (cmap, with_blank_afferents(cmap)))
     assert not blank.place.any()
     assert not blank.heading.any()
     np.testing.assert_array_equal(blank.phase, known.phase)
@@ -27,7 +27,7 @@ def test_a_newborn_remembers_all_but_its_cells_hear_nothing(cmap: CognitiveMap, 
 
 
 def test_a_newborn_learns_the_same_weights_again(cmap: CognitiveMap, walk: Recording) -> None:
-    growing = newborn(cmap)
+    growing = with_blank_afferents(cmap)
     growing.partial_fit(walk.views[:1000], walk.odours[:1000])
     growing.partial_fit(walk.views[1000:], walk.odours[1000:])
     for cells in ("place", "heading"):
@@ -36,10 +36,10 @@ def test_a_newborn_learns_the_same_weights_again(cmap: CognitiveMap, walk: Recor
         )
 
 
-def excited(cmap: CognitiveMap, walk: Recording) -> Excited:
-    layers = cmap._layers
+def excited(cmap: CognitiveMap, walk: Recording) -> ChartActivity:
+    layers = cmap._network
     with torch.no_grad():
-        return layers.recall.excite(layers.charts, torch.from_numpy(cmap.encode(walk.views)))
+        return layers.readout.excite(layers.charts, torch.from_numpy(cmap.encode(walk.views)))
 
 
 @pytest.mark.parametrize("cells", ["place", "heading"])
@@ -54,7 +54,7 @@ def test_silent_charts_are_never_heard(cmap: CognitiveMap, walk: Recording) -> N
     views = walk.views[:100]
     silent = np.random.default_rng(0).permutation(cmap.charts)[: cmap.charts // 2]
     assert np.isin(silent, excited(cmap, walk).chart.numpy()).all()
-    less = silenced(cmap, silent)
+    less = lesioned(cmap, silent)
     assert not np.isin(silent, excited(less, walk).chart.numpy()).any()
     heard = less.perceive(views)
     assert np.isfinite(heard.place).all()
@@ -63,11 +63,11 @@ def test_silent_charts_are_never_heard(cmap: CognitiveMap, walk: Recording) -> N
     for name in ("place.afferents.association", "heading.afferents.association"):
         weights[name] = weights[name].clone()
         weights[name][silent] = 1e9
-    np.testing.assert_array_equal(operated(less, weights).perceive(views).place, heard.place)
+    np.testing.assert_array_equal(with_state(less, weights).perceive(views).place, heard.place)
 
 
 def test_no_chart_silenced_changes_nothing(cmap: CognitiveMap, walk: Recording) -> None:
-    none = silenced(cmap, np.zeros(0, dtype=int))
+    none = lesioned(cmap, np.zeros(0, dtype=int))
     np.testing.assert_array_equal(
         none.perceive(walk.views[:20]).heading, cmap.perceive(walk.views[:20]).heading
     )
@@ -75,8 +75,8 @@ def test_no_chart_silenced_changes_nothing(cmap: CognitiveMap, walk: Recording) 
 
 def test_the_map_itself_is_left_as_it_is(cmap: CognitiveMap) -> None:
     before = weights_of(cmap)
-    silenced(cmap, np.arange(10))
-    newborn(cmap)
+    lesioned(cmap, np.arange(10))
+    with_blank_afferents(cmap)
     for name, kept in weights_of(cmap).items():
         assert kept.equal(before[name]) or kept.isnan().any(), name
 

@@ -3,7 +3,7 @@ import torch
 from torch import Tensor
 
 from neurons.atlas.atlas import Atlas
-from neurons.atlas.disambiguation import branches
+from neurons.atlas.disambiguation import place_branches
 
 FIRST, SECOND = torch.tensor([-1.0, 0.0]), torch.tensor([1.0, 0.0])
 
@@ -27,13 +27,13 @@ def bump(place: Tensor, *centres: Tensor, width: float = 0.35) -> Tensor:
 
 def test_a_unit_of_one_place_is_left_alone(charts: tuple[Tensor, Tensor, Tensor]) -> None:
     place, heading, edges = charts
-    assert branches(bump(place, FIRST)[:, None], heading, edges).all()
+    assert place_branches(bump(place, FIRST)[:, None], heading, edges).all()
 
 
 def test_units_of_two_places_share_them_out(charts: tuple[Tensor, Tensor, Tensor]) -> None:
     place, heading, edges = charts
     both = bump(place, FIRST, SECOND)
-    kept = branches(torch.stack([both] * 4, dim=1), heading, edges)
+    kept = place_branches(torch.stack([both] * 4, dim=1), heading, edges)
     near = {0: (place - FIRST).norm(dim=1) < 0.5, 1: (place - SECOND).norm(dim=1) < 0.5}
     sides = [0 if unit[near[0]].float().mean() > 0.5 else 1 for unit in kept.T]
     assert sorted(sides) == [0, 0, 1, 1]
@@ -45,7 +45,7 @@ def test_units_of_two_places_share_them_out(charts: tuple[Tensor, Tensor, Tensor
 def test_a_place_that_is_covered_already_is_left_to_the_others(charts: tuple[Tensor, Tensor, Tensor]) -> None:
     place, heading, edges = charts
     rates = torch.stack([bump(place, FIRST, SECOND), bump(place, FIRST)], dim=1)
-    kept = branches(rates, heading, edges)
+    kept = place_branches(rates, heading, edges)
     assert kept[:, 1].all()
     assert kept[(place - SECOND).norm(dim=1) < 0.5, 0].float().mean() > 0.98
     assert kept[(place - FIRST).norm(dim=1) < 0.5, 0].float().mean() < 0.02
@@ -55,7 +55,7 @@ def test_headings_apart_at_one_place_are_not_two_places(charts: tuple[Tensor, Te
     place, heading, edges = charts
     gaps = (heading % 3.1416 - 1.5708).abs() > 0.5
     rates = bump(place, FIRST) * gaps
-    assert branches(rates[:, None], heading, edges).all()
+    assert place_branches(rates[:, None], heading, edges).all()
 
 
 def test_without_a_compass_two_headings_that_no_turn_joins_are_two_places(
@@ -63,11 +63,11 @@ def test_without_a_compass_two_headings_that_no_turn_joins_are_two_places(
 ) -> None:
     place, heading, edges = charts
     ways = (heading.cos().abs() > 0.8) * bump(place, FIRST)
-    kept = branches(ways[:, None], torch.full_like(heading, torch.nan), edges)[:, 0]
+    kept = place_branches(ways[:, None], torch.full_like(heading, torch.nan), edges)[:, 0]
     ahead, back = (kept[(sign * heading.cos() > 0.8) & (ways > 0.3)].float().mean() for sign in (1, -1))
     assert sorted([round(float(ahead)), round(float(back))]) == [0, 1]
 
 
 def test_silent_units_are_left_alone(charts: tuple[Tensor, Tensor, Tensor]) -> None:
     place, heading, edges = charts
-    assert branches(torch.zeros(len(place), 2), heading, edges).all()
+    assert place_branches(torch.zeros(len(place), 2), heading, edges).all()

@@ -6,7 +6,7 @@ import torch
 from sklearn.linear_model import Ridge
 from torch import Tensor
 
-from neurons.atlas.metric_map import BLOCK, LAG, RIDGE, STRAIGHT, Gauge, _patches
+from neurons.atlas.metric_map import BLOCK, LAG, RIDGE, STRAIGHT, MetricMap, _patches
 from neurons.layers.place_cells import PlaceCells
 
 SOURCES = torch.tensor([[-0.2, -0.1], [1.2, 0.1], [0.4, 1.3]])
@@ -60,14 +60,14 @@ def walked() -> Walk:
     return walk(6000, 0)
 
 
-def learn(cells: PlaceCells, walk: Walk, *, batch: int = 256, settle: bool = True) -> Gauge:
-    gauge = Gauge(len(cells.centres), 3)
+def learn(cells: PlaceCells, walk: Walk, *, batch: int = 256, solve: bool = True) -> MetricMap:
+    metric_map = MetricMap(len(cells.centres), 3)
     learnt = walk.heading - off(walk.place)
     for odour, heading in zip(walk.odour.split(batch), learnt.split(batch), strict=True):
-        gauge.partial_fit(cells, odour, heading)
-    if settle:
-        gauge.settle()
-    return gauge
+        metric_map.partial_fit(cells, odour, heading)
+    if solve:
+        metric_map.solve()
+    return metric_map
 
 
 def spread_of_angle(angle: Tensor) -> float:
@@ -78,10 +78,10 @@ def spread_of_angle(angle: Tensor) -> float:
 
 
 def test_finds_the_map_and_the_offset(cells: PlaceCells, walked: Walk) -> None:
-    gauge, fresh = learn(cells, walked), walk(1000, 1)
-    assert not gauge.complain()
-    assert gauge.foretold.min() > 0.99
-    position, offset = gauge(cells, fresh.odour)
+    metric_map, fresh = learn(cells, walked), walk(1000, 1)
+    assert not metric_map.diagnosis()
+    assert metric_map.cross_validated_r2.min() > 0.99
+    position, offset = metric_map(cells, fresh.odour)
     z, true = (p.double().numpy() @ [1, 1j] for p in (position, fresh.place))
     affine = np.stack([z, np.ones_like(z)], axis=1)
     laid, *_ = np.linalg.lstsq(affine, true, rcond=None)
@@ -94,7 +94,7 @@ def test_finds_the_map_and_the_offset(cells: PlaceCells, walked: Walk) -> None:
 
 def test_sums_over_straight_ways_only(cells: PlaceCells) -> None:
     some = walk(600, 2)
-    gauge = learn(cells, some, settle=False)
+    metric_map = learn(cells, some, solve=False)
     share, patches = (part.double().numpy() for part in _patches(cells, some.odour))
     learnt = (some.heading - off(some.place)).double().numpy()
     spread, ahead = np.zeros((2, FEATURES, FEATURES)), np.zeros((2, CELLS, FEATURES), complex)
@@ -109,17 +109,17 @@ def test_sums_over_straight_ways_only(cells: PlaceCells) -> None:
             spread[half] += np.outer(moved, moved)
             ahead[half] += np.outer(share[t + 1 : t + LAG].mean(axis=0) * u.conj(), moved)
             pairs[half] += 1
-    assert gauge.counted[:, 1].tolist() == pairs
-    assert gauge.seen == len(learnt)
-    np.testing.assert_allclose(gauge.spread, spread, atol=1e-4)
-    np.testing.assert_allclose(gauge.ahead, np.stack([ahead.real, ahead.imag], axis=3), atol=1e-4)
+    assert metric_map.counted[:, 1].tolist() == pairs
+    assert metric_map.seen == len(learnt)
+    np.testing.assert_allclose(metric_map.spread, spread, atol=1e-4)
+    np.testing.assert_allclose(metric_map.ahead, np.stack([ahead.real, ahead.imag], axis=3), atol=1e-4)
 
 
 def test_map_is_ridge_regression_and_the_share_foretold_what_it_leaves(
     cells: PlaceCells, walked: Walk
 ) -> None:
-    gauge = learn(cells, walked)
-    evidence = gauge._evidence(slice(0, 2))
+    metric_map = learn(cells, walked)
+    evidence = metric_map._evidence(slice(0, 2))
     positions, turns = evidence.solve()
     torch.testing.assert_close(turns.abs(), torch.ones(CELLS, dtype=torch.double))
     rows, wanted = [], []
@@ -138,13 +138,15 @@ def test_map_is_ridge_regression_and_the_share_foretold_what_it_leaves(
     mine = v.cdouble() @ positions
     np.testing.assert_allclose(torch.view_as_real(mine), trusted, atol=1e-3)
     left = (mine - u).abs().square().sum()
-    assert evidence.foretold(positions, turns) == pytest.approx(1 - float(left) / evidence.power, abs=1e-4)
+    assert evidence.cross_validated_r2(positions, turns) == pytest.approx(
+        1 - float(left) / evidence.power, abs=1e-4
+    )
 
 
 @pytest.mark.parametrize("batch", [1, 2, 100])
 def test_any_batches_will_do(cells: PlaceCells, batch: int) -> None:
     some = walk(600, 2)
-    whole, parts = (learn(cells, some, batch=size, settle=False) for size in (600, batch))
+    whole, parts = (learn(cells, some, batch=size, solve=False) for size in (600, batch))
     for name, value in whole.state_dict().items():
         torch.testing.assert_close(
             parts.state_dict()[name], value, atol=1e-4, rtol=1e-5, equal_nan=True, msg=name
@@ -154,18 +156,18 @@ def test_any_batches_will_do(cells: PlaceCells, batch: int) -> None:
 def test_sums_of_two_walks_add_up_when_a_jump_is_told(cells: PlaceCells) -> None:
     along = torch.stack([torch.linspace(0.1, 0.9, 2 * BLOCK), torch.full((2 * BLOCK,), 0.5)], dim=1)
     one, other = (Walk(way, torch.zeros(len(way)), smell(way)) for way in (along, along.flip(0)))
-    apart = [learn(cells, each, settle=False) for each in (one, other)]
-    both = learn(cells, one, settle=False)
-    both.jump()
+    apart = [learn(cells, each, solve=False) for each in (one, other)]
+    both = learn(cells, one, solve=False)
+    both.break_sequence()
     both.partial_fit(cells, other.odour, other.heading - off(other.place))
     for name in ("spread", "ahead", "shared", "counted", "seen"):
-        total = sum(getattr(gauge, name) for gauge in apart)
+        total = sum(getattr(metric_map, name) for metric_map in apart)
         torch.testing.assert_close(getattr(both, name), total, atol=1e-4, rtol=1e-5)
 
 
-def assert_left_out(gauge: Gauge, cells: PlaceCells, odour: Tensor, said: str) -> None:
-    assert said in gauge.complain()
-    position, offset = gauge(cells, odour)
+def assert_left_out(metric_map: MetricMap, cells: PlaceCells, odour: Tensor, said: str) -> None:
+    assert said in metric_map.diagnosis()
+    position, offset = metric_map(cells, odour)
     assert position.isnan().all()
     assert not offset.any()
 

@@ -33,7 +33,7 @@ def charts(views: Tensor) -> Charts:
     order = torch.Generator().manual_seed(1)
     for winners in (12, 10, 8, 6, 5, 4, 4):
         for batch in views[torch.randperm(len(views), generator=order)].split(250):
-            grown.partial_fit(batch, winners=winners, memory=float(len(views)))
+            grown.partial_fit(batch, winners=winners, window=float(len(views)))
     grown.freeze()
     return grown
 
@@ -72,16 +72,16 @@ def test_centres_tile_the_manifold(charts: Charts, views: Tensor) -> None:
 def test_first_codes_become_the_centres(views: Tensor) -> None:
     grown = blank(30)
     for batch in views[:30].split(8):
-        grown.partial_fit(batch, winners=4, memory=100.0)
+        grown.partial_fit(batch, winners=4, window=100.0)
     assert torch.equal(grown.centres, views[:30])
-    assert len(grown) == int(grown.placed) == 30
+    assert len(grown) == int(grown.initialised) == 30
 
 
 def test_placing_over_batches_leaves_the_rest_to_compete(views: Tensor) -> None:
     once, bit_by_bit = blank(30), blank(30)
-    once.partial_fit(views[:50], winners=4, memory=100.0)
+    once.partial_fit(views[:50], winners=4, window=100.0)
     for batch in views[:50].split([7, 11, 32]):
-        bit_by_bit.partial_fit(batch, winners=4, memory=100.0)
+        bit_by_bit.partial_fit(batch, winners=4, window=100.0)
     assert not torch.equal(once.centres, views[:30])
     for name, buffer in once.named_buffers():
         assert torch.equal(buffer, bit_by_bit.get_buffer(name)), name
@@ -95,7 +95,7 @@ def test_lone_chart_learns_mean_and_principal_components() -> None:
     lone = blank(1, 6)
     for _ in range(4):
         for batch in torch.from_numpy(x).float().split(100):
-            lone.partial_fit(batch, winners=1, memory=1e9)
+            lone.partial_fit(batch, winners=1, window=1e9)
     np.testing.assert_allclose(lone.centres[0], x.mean(axis=0), atol=1e-3)
     assert (np.abs(np.diag(lone.tangents[0].double().numpy() @ basis)) > 0.99).all()
     np.testing.assert_allclose(lone.variances[0], spread[:3] ** 2, rtol=0.15)
@@ -104,22 +104,22 @@ def test_lone_chart_learns_mean_and_principal_components() -> None:
 def test_memory_is_a_number_of_views() -> None:
     x = torch.randn(301, 20, generator=torch.Generator().manual_seed(5))
     first, second, third = x[1:].split(100)
-    for memory, mean in {
+    for window, mean in {
         100.0: third.mean(dim=0),
         200.0: (0.25 * first + 0.5 * second + third).mean(dim=0) / 1.75,
     }.items():
         lone = blank(1)
-        lone.partial_fit(x[:1], winners=1, memory=memory)
+        lone.partial_fit(x[:1], winners=1, window=window)
         for batch in (first, second, third):
-            lone.partial_fit(batch, winners=1, memory=memory)
+            lone.partial_fit(batch, winners=1, window=window)
         torch.testing.assert_close(lone.centres[0], mean, atol=1e-5, rtol=1e-4)
 
 
 def test_second_rank_learns_with_weight_exp_minus_one() -> None:
     left, right = torch.full((4, 20), -1.0), torch.full((6, 20), 1.0)
     pair = blank(2)
-    pair.partial_fit(torch.cat([left[:1], right[:1]]), winners=2, memory=1e9)
-    pair.partial_fit(torch.cat([left, right]), winners=2, memory=1e9)
+    pair.partial_fit(torch.cat([left[:1], right[:1]]), winners=2, window=1e9)
+    pair.partial_fit(torch.cat([left, right]), winners=2, window=1e9)
     h = np.exp(-1.0)
     np.testing.assert_allclose(pair.centres[0], (-4 + 6 * h) / (4 + 6 * h), rtol=1e-5)
     np.testing.assert_allclose(pair.centres[1], (6 - 4 * h) / (6 + 4 * h), rtol=1e-5)
@@ -128,20 +128,22 @@ def test_second_rank_learns_with_weight_exp_minus_one() -> None:
 def test_ranks_share_sangers_rule(views: Tensor) -> None:
     """One batch on drawn centres, view by view: variances start at nought, so U is the drive alone."""
     layer = blank(6)
-    layer.partial_fit(views[:6], winners=3, memory=1e9)
+    layer.partial_fit(views[:6], winners=3, window=1e9)
     before, codes = layer.tangents.double().numpy(), views[6:60]
     centres = layer.centres.double().numpy().copy()
-    drive, mass = np.zeros_like(before), np.zeros(6)
+    drive, responsibility = np.zeros_like(before), np.zeros(6)
     for z in codes.double().numpy():
         for rank, k in enumerate(np.argsort(np.linalg.norm(z - centres, axis=1))[:3]):
             h, residual = np.exp(-2 * rank / 3), z - centres[k]
             y = before[k] @ residual
             drive[k] += h * (np.outer(y, residual) - np.tril(np.outer(y, y), -1) @ before[k])
-            mass[k] += h
-    layer.partial_fit(codes, winners=3, memory=1e9)
-    variances = np.linalg.norm(drive, axis=2) / mass[:, None]
+            responsibility[k] += h
+    layer.partial_fit(codes, winners=3, window=1e9)
+    variances = np.linalg.norm(drive, axis=2) / responsibility[:, None]
     np.testing.assert_allclose(layer.variances, variances, rtol=1e-3, atol=1e-6)
-    np.testing.assert_allclose(layer.tangents, drive / (variances * mass[:, None])[..., None], atol=1e-3)
+    np.testing.assert_allclose(
+        layer.tangents, drive / (variances * responsibility[:, None])[..., None], atol=1e-3
+    )
 
 
 def test_nearest_same_as_scikit_learn(charts: Charts, views: Tensor) -> None:
@@ -154,7 +156,7 @@ def test_nearest_same_as_scikit_learn(charts: Charts, views: Tensor) -> None:
 
 def test_no_more_winners_than_charts(views: Tensor) -> None:
     grown = blank(3)
-    grown.partial_fit(views[:3], winners=12, memory=100.0)
+    grown.partial_fit(views[:3], winners=12, window=100.0)
     assert grown.excite(views[:5], 12).chart.shape == (5, 3)
 
 
@@ -176,14 +178,14 @@ def test_grows_halfway_along_the_longest_overlaps() -> None:
     charts.grow(overlapping, 2)
     assert charts.centres[4:, 1].tolist() == [9.0, 2.0]
     assert charts.tangents[4:].equal(before["tangents"][[2, 0]])
-    assert not charts.mass[4:].any()
+    assert not charts.responsibility[4:].any()
     assert not charts.variances[4:].any()
-    assert charts.placed == len(charts) == 6
-    for name in ("centres", "tangents", "mass", "variances"):
+    assert charts.initialised == len(charts) == 6
+    for name in ("centres", "tangents", "responsibility", "variances"):
         assert charts.get_buffer(name)[:4].equal(before[name])
     charts.partial_fit(
-        torch.randn(50, 5, generator=torch.Generator().manual_seed(1)), winners=6, memory=100.0
+        torch.randn(50, 5, generator=torch.Generator().manual_seed(1)), winners=6, window=100.0
     )
-    assert charts.mass.all()
+    assert charts.responsibility.all()
     charts.grow(overlapping, 9)
     assert len(charts) == 10

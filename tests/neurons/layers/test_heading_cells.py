@@ -21,7 +21,7 @@ def test_directions_end_up_evenly_spaced(seed: int) -> None:
     layer = blank(24, seed)
     for epoch in range(20):
         for batch in headings(2000, epoch).split(100):
-            layer.compete(batch, memory=2000.0)
+            layer.compete(batch, window=2000.0)
     gaps = np.diff(np.sort(layer.preferred), append=layer.preferred.min() + 2 * np.pi)
     assert gaps.max() < 1.8 * 2 * np.pi / 24
     assert gaps.std() < 0.5 * gaps.mean()
@@ -46,26 +46,26 @@ def test_whole_turns_do_not_matter() -> None:
     layer, probes = blank(10), headings(50)
     torch.testing.assert_close(layer.tuning(probes + 4 * torch.pi), layer.tuning(probes), atol=1e-3, rtol=0)
     once, turned = blank(10), blank(10)
-    once.compete(probes, memory=100.0)
-    turned.compete(probes + 2 * torch.pi, memory=100.0)
+    once.compete(probes, window=100.0)
+    turned.compete(probes + 2 * torch.pi, window=100.0)
     torch.testing.assert_close(turned.preferred, once.preferred, atol=1e-4, rtol=0)
 
 
 def test_unit_behind_follows_across_the_cut() -> None:
     layer = blank(1)
     layer.preferred = torch.tensor([3.1])
-    layer.compete(torch.full((50,), -3.1), memory=1e9)
+    layer.compete(torch.full((50,), -3.1), window=1e9)
     assert layer.preferred.item() == pytest.approx(-3.1, abs=1e-4)
 
 
-@pytest.mark.parametrize("memory", [100.0, 200.0])
-def test_memory_is_a_number_of_views(memory: float) -> None:
+@pytest.mark.parametrize("window", [100.0, 200.0])
+def test_the_window_is_a_number_of_views(window: float) -> None:
     first, second = (0.2 * headings(200)).split(100)
     layer = blank(1)
     layer.preferred = torch.zeros(1)
-    layer.compete(first, memory=memory)
-    layer.compete(second, memory=memory)
-    kept = 1 - 100 / memory
+    layer.compete(first, window=window)
+    layer.compete(second, window=window)
+    kept = 1 - 100 / window
     trusted = (kept * first + second).mean() / (1 + kept)
     assert layer.preferred.item() == pytest.approx(trusted.item(), abs=1e-5)
 
@@ -74,7 +74,7 @@ def test_only_the_nearest_units_learn() -> None:
     layer = blank(8)
     layer.preferred = torch.linspace(-3, 3, 8)
     before = layer.preferred.clone()
-    layer.compete(torch.tensor([0.1]), memory=100.0)
+    layer.compete(torch.tensor([0.1]), window=100.0)
     moved = ((layer.preferred - before).abs() > 1e-4).nonzero().flatten().tolist()
     assert moved == [3, 4, 5]
 
@@ -82,6 +82,6 @@ def test_only_the_nearest_units_learn() -> None:
 def test_same_generator_same_bits() -> None:
     first, again, other = blank(12), blank(12), blank(12, 5)
     for layer in (first, again, other):
-        layer.compete(headings(100), memory=100.0)
+        layer.compete(headings(100), window=100.0)
     assert torch.equal(first.preferred, again.preferred)
     assert not torch.equal(first.preferred, other.preferred)

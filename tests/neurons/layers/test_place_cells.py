@@ -16,7 +16,7 @@ def grown(cells: int, odours: Tensor, *, epochs: int = 4) -> PlaceCells:
     layer = PlaceCells(cells, 1, odours.shape[1])
     for _ in range(epochs):
         for batch in odours.split(200):
-            layer.compete(batch, memory=float(len(odours)))
+            layer.compete(batch, window=float(len(odours)))
     return layer
 
 
@@ -69,7 +69,7 @@ def test_a_strange_smell_excites_nothing_and_leaves_no_subnormal_rate() -> None:
 def test_six_units_learn_from_one_smell() -> None:
     odours = smells(31)
     layer = PlaceCells(30, 1, 2)
-    layer.compete(odours, memory=100.0)
+    layer.compete(odours, window=100.0)
     learnt = (layer.centres - odours[:30]).norm(dim=1).nonzero().flatten().tolist()
     nearest = np.argsort(np.linalg.norm(odours[:30] - odours[30], axis=1))[:6]
     assert learnt == sorted(nearest.tolist())
@@ -81,7 +81,7 @@ def test_lone_unit_learns_mean_and_covariance() -> None:
     x = rng.multivariate_normal([3.0, -1.0], spread, size=8000)
     layer = PlaceCells(1, 1, 2)
     for batch in torch.from_numpy(x).float().split(100):
-        layer.compete(batch, memory=1e9)
+        layer.compete(batch, window=1e9)
     np.testing.assert_allclose(layer.centres[0], x[1:].mean(axis=0), atol=1e-3)
     np.testing.assert_allclose(layer.covariances[0], np.cov(x.T), rtol=0.1)
 
@@ -99,14 +99,14 @@ def test_fields_follow_the_geometry_of_smells() -> None:
     assert (variance[:, 0] > 100 * variance[:, 1]).all()
 
 
-@pytest.mark.parametrize("memory", [100.0, 200.0])
-def test_memory_is_a_number_of_views(memory: float) -> None:
+@pytest.mark.parametrize("window", [100.0, 200.0])
+def test_the_window_is_a_number_of_views(window: float) -> None:
     x = smells(301)
     first, second, third = x[1:].split(100)
     layer = PlaceCells(1, 1, 2)
     for batch in (x[:1], first, second, third):
-        layer.compete(batch, memory=memory)
-    kept = 1 - 100 / memory
+        layer.compete(batch, window=window)
+    kept = 1 - 100 / window
     trusted = (kept**2 * first + kept * second + third).mean(dim=0) / (1 + kept + kept**2)
     torch.testing.assert_close(layer.centres[0], trusted, atol=1e-5, rtol=0)
 
@@ -115,11 +115,11 @@ def test_first_smells_become_the_centres_over_batches() -> None:
     odours = smells(50)
     once, bit_by_bit = PlaceCells(30, 1, 2), PlaceCells(30, 1, 2)
     for batch in odours[:25].split(10):
-        bit_by_bit.compete(batch, memory=100.0)
+        bit_by_bit.compete(batch, window=100.0)
     assert torch.equal(bit_by_bit.centres[:25], odours[:25])
     assert not bit_by_bit.centres[25:].any()
-    assert int(bit_by_bit.placed) == 25
-    bit_by_bit.compete(odours[25:], memory=100.0)
-    once.compete(odours, memory=100.0)
+    assert int(bit_by_bit.initialised) == 25
+    bit_by_bit.compete(odours[25:], window=100.0)
+    once.compete(odours, window=100.0)
     for name, buffer in once.named_buffers():
         assert torch.equal(buffer, bit_by_bit.get_buffer(name)), name

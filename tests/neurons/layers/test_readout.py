@@ -8,7 +8,7 @@ from torch import Tensor
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.synchronisation import Compass
 from neurons.layers.charts import Charts
-from neurons.layers.readout import BREADTH, Recall
+from neurons.layers.readout import BREADTH, Readout
 
 SLOPES = torch.tensor([[1.0, -0.5, 2.0], [0.3, 1.5, -1.0]])
 OFFSETS = torch.tensor([0.5, -2.0, 1.0])
@@ -26,16 +26,16 @@ def compass(tiling: Tiling, turning: Callable[[Tensor], Tensor], radius: float) 
 
 
 @pytest.fixture(scope="module")
-def settled(tiling: Tiling) -> Callable[[Compass | None], Recall]:
+def settled(tiling: Tiling) -> Callable[[Compass | None], Readout]:
     pose, charts = tiling
 
-    def settle(compass: Compass | None) -> Recall:
+    def solve(compass: Compass | None) -> Readout:
         jacobians = charts.tangents[:, :, :2] @ SLOPES
-        recall = Recall(len(charts), 4, 3)
-        recall.settle(Atlas.of(charts.centres), compass, smell(pose), jacobians)
-        return recall
+        readout = Readout(len(charts), 4, 3)
+        readout.solve(Atlas.of(charts.centres), compass, smell(pose), jacobians)
+        return readout
 
-    return settle
+    return solve
 
 
 @pytest.fixture(scope="module")
@@ -45,14 +45,14 @@ def unseen(poses: Callable[[int, int], Tensor]) -> Tensor:
 
 def test_heading_and_odour_of_codes_held_out(
     tiling: Tiling,
-    settled: Callable[[Compass | None], Recall],
+    settled: Callable[[Compass | None], Readout],
     compass: Compass,
     unseen: Tensor,
     cylinder: Callable[[Tensor], Tensor],
 ) -> None:
     _, charts = tiling
-    recall, codes = settled(compass), cylinder(unseen)
-    heading, odour = recall(charts, codes, recall.excite(charts, codes))
+    readout, codes = settled(compass), cylinder(unseen)
+    heading, odour = readout(charts, codes, readout.excite(charts, codes))
     error = torch.angle(torch.exp(1j * (heading - unseen[:, 2]))).rad2deg().abs()
     assert error.median() < 0.5
     assert error.max() < 3
@@ -62,13 +62,13 @@ def test_heading_and_odour_of_codes_held_out(
 
 def test_weights_are_gaussian_in_distance(
     tiling: Tiling,
-    settled: Callable[[Compass | None], Recall],
+    settled: Callable[[Compass | None], Readout],
     unseen: Tensor,
     cylinder: Callable[[Tensor], Tensor],
 ) -> None:
     _, charts = tiling
-    recall, codes = settled(None), cylinder(unseen)
-    chart, weight = recall.excite(charts, codes)
+    readout, codes = settled(None), cylinder(unseen)
+    chart, weight = readout.excite(charts, codes)
     torch.testing.assert_close(weight.sum(dim=1), torch.ones(len(codes)))
     assert chart.shape == (500, 8)
     distance = torch.cdist(codes.double(), charts.centres.double()).gather(1, chart).numpy()
@@ -79,12 +79,12 @@ def test_weights_are_gaussian_in_distance(
 
 def test_no_compass_no_heading(
     tiling: Tiling,
-    settled: Callable[[Compass | None], Recall],
+    settled: Callable[[Compass | None], Readout],
     unseen: Tensor,
     cylinder: Callable[[Tensor], Tensor],
 ) -> None:
     _, charts = tiling
-    recall, codes = settled(None), cylinder(unseen)
-    heading, odour = recall(charts, codes, recall.excite(charts, codes))
+    readout, codes = settled(None), cylinder(unseen)
+    heading, odour = readout(charts, codes, readout.excite(charts, codes))
     assert heading.isnan().all()
     torch.testing.assert_close(odour, smell(unseen), atol=1e-4, rtol=0)
