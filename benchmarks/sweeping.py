@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from benchmarks.timing import Figures
-from cogmap.experiments.conditions import Setting
+from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.registry import EXPERIMENTS, Experiment
 from cogmap.experiments.result import Result
 from cogmap.sweeps import Plan, sweep
@@ -16,18 +16,18 @@ SECONDS, WORKERS, POINTS = 2.0, 2, 48
 NOISES = np.linspace(0.05, 0.3, 24).tolist()
 
 
-def waiting(setting: Setting) -> Result:
+def waiting(conditions: Conditions) -> Result:
     """Take two seconds and nothing of the machine."""
     time.sleep(SECONDS)
-    return Result({"seed": setting.seed})
+    return Result({"seed": conditions.seed})
 
 
-def computing(setting: Setting) -> Result:
+def computing(conditions: Conditions) -> Result:
     """Take two seconds of one core."""
     started = time.thread_time()
     while time.thread_time() < started + SECONDS:
         pass
-    return Result({"seed": setting.seed})
+    return Result({"seed": conditions.seed})
 
 
 def sweeping() -> Figures:

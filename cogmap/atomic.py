@@ -15,7 +15,7 @@ METRICS = "metrics.json"
 
 
 @contextmanager
-def whole(path: Path) -> Iterator[Path]:
+def atomic_write(path: Path) -> Iterator[Path]:
     """Give another path, for a file or a folder that takes the name of `path` at the end.
 
     A file that is there already is replaced, a failure changes nothing.

@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float
 
 from arena import Recording
-from cogmap.atomic import check_absent, whole
+from cogmap.atomic import atomic_write, check_absent
 from cogmap.cells import poisson_spikes
 from cogmap.errors import CogmapError
 from cogmap.inputs import checked_count
@@ -69,7 +69,7 @@ def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int
     rates = {name: getattr(activity, name).astype(float) for name in ("place", "heading")}
     spikes = {name: _spike_times(cells, recording.times, lasting, rng) for name, cells in rates.items()}
     file = _lay_out(recording, rates, spikes)
-    with whole(out) as fresh, pynwb.NWBHDF5IO(fresh, "w") as disk:
+    with atomic_write(out) as fresh, pynwb.NWBHDF5IO(fresh, "w") as disk:
         disk.write(file)
 
 

@@ -123,8 +123,8 @@ def read(
     """Read views by index, one slice a shard: zarr's own indexing by arrays takes 10 ms a view."""
     out = np.empty((len(chosen), *views.shape[1:]), np.uint8)
     shard = chosen // SHARD
-    for one in np.unique(shard):
-        here = np.flatnonzero(shard == one)
+    for item in np.unique(shard):
+        here = np.flatnonzero(shard == item)
         low, high = chosen[here].min(), chosen[here].max()
         out[here] = np.asarray(views[low : high + 1])[chosen[here] - low]
     return out

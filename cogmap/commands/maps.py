@@ -72,8 +72,8 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
     figures: dict[str, Any] = dict(
         score(seen, np.asarray(fresh.poses), train=(known, np.asarray(walk.poses)))
     )
-    told = {"trusted": grown.trusted_, "reason": grown.reason_, "metric_reason": grown.metric_reason_}
-    tell({**told, **figures}, as_json=as_json)
+    summary = {"trusted": grown.trusted_, "reason": grown.reason_, "metric_reason": grown.metric_reason_}
+    tell({**summary, **figures}, as_json=as_json)
 
 
 @app.command(name="export")

@@ -63,8 +63,8 @@ def _experiment(
     """Run an experiment of the paper: a table of metrics, figures, and the data behind them.
 
     On the manifold of views: rotation, cyclic, brownian, similarity, localisation, roadmap and
-    distinguishability. On the cells: fusion, walks, sources, acuity, darkness, cue_rotation, goals,
-    directionality and neurons. On the holes of all that a map knows: homology.
+    distinguishability. On the cells: fusion, slow_features, odour_ablation, acuity, darkness,
+    cue_rotation, goals, directionality and development. On the holes of all that a map knows: homology.
 
     Examples: `cogmap experiment rotation`; `cogmap experiment brownian --views 4000 --seed 1 --out walk`;
     `cogmap experiment fusion --arena pillar`; `cogmap experiment localisation --arena obstacles --json`.
@@ -139,13 +139,13 @@ def _sweep(
             "--retry-failed does them again\n"
         )
     untrusted = int((~table["trusted"].fillna(value=True)).sum())
-    told = {
+    summary = {
         "table": str(out / "table.csv"),
         "rows": len(table),
         "failed": len(failed),
         "untrusted": untrusted,
     }
-    tell(told, as_json=as_json)
+    tell(summary, as_json=as_json)
 
 
 @app.command(name="report")

@@ -78,7 +78,7 @@ def _explore(
     camera: Literal["panoramic", "perspective"] = "panoramic",
     width: int | None = None,
     height: int | None = None,
-    noise: float = 0.1,
+    nose_noise: float = 0.1,
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
@@ -109,7 +109,7 @@ def _explore(
         What it looks through: all around, or 90° ahead.
     width, height
         Of the views, pixels; 360×60 all around and 320×240 ahead by default.
-    noise
+    nose_noise
         Standard deviation of the log of the smelt concentration.
     """
     way = {"odorant": odorant, "path": path, "fit": fit}
@@ -118,7 +118,7 @@ def _explore(
         Arena.load(arena),
         MOTIONS[motion](**{name: value for name, value in way.items() if value is not None}),
         getattr(Camera, camera)(**{name: value for name, value in size.items() if value is not None}),
-        nose=Nose(noise=noise),
+        nose=Nose(noise=nose_noise),
         views=views,
         seed=seed,
         out=out,

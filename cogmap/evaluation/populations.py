@@ -52,32 +52,32 @@ def perceive(cmap: CognitiveMap, views: Any) -> Activity:
         return cmap.perceive(views)
 
 
-def trust(cmap: CognitiveMap) -> dict[str, Any]:
+def trust_report(cmap: CognitiveMap) -> dict[str, Any]:
     """Whether a map is to be trusted, and why not."""
     return {"trusted": cmap.trusted_, "reason": cmap.reason_}
 
 
 def competing_cells(
-    learnt: Float[np.ndarray, "train inputs"],
-    *asked: Float[np.ndarray, "_ inputs"],
+    train: Float[np.ndarray, "train inputs"],
+    *test: Float[np.ndarray, "_ inputs"],
     seed: int,
     cells: int = CELLS,
 ) -> list[Float[np.ndarray, "_ cells"]]:
     """Let the place cells' layer compete for any inputs, as long as in a map, and give its rates in Hz."""
-    inputs = torch.from_numpy(np.asarray(learnt, np.float32))
+    inputs = torch.from_numpy(np.asarray(train, np.float32))
     order = np.random.default_rng(seed)
     layer = PlaceCells(cells, 1, inputs.shape[1])
     with one_thread():
         for _ in range(EPOCHS["cells"]):
             for rows in torch.from_numpy(order.permutation(len(inputs))).split(BATCH):
                 layer.compete(inputs[rows], window=float(len(inputs)))
-        return [layer.tuning(torch.from_numpy(np.asarray(some, np.float32))).numpy() for some in asked]
+        return [layer.tuning(torch.from_numpy(np.asarray(batch, np.float32))).numpy() for batch in test]
 
 
-class Ground(NamedTuple):
+class GroundTruth(NamedTuple):
     """The truth that cells are measured against."""
 
-    known: Float[np.ndarray, "train 3"]
+    train: Float[np.ndarray, "train 3"]
     """Poses of the views that were learnt from: m, m, rad."""
     poses: Float[np.ndarray, "views 3"]
     """Poses of fresh views, on which cells are measured."""
@@ -86,14 +86,14 @@ class Ground(NamedTuple):
 
     @classmethod
     def of(
-        cls, room: Arena, known: Float[np.ndarray, "train 3"], poses: Float[np.ndarray, "views 3"]
-    ) -> Ground:
+        cls, room: Arena, train: Float[np.ndarray, "train 3"], poses: Float[np.ndarray, "views 3"]
+    ) -> GroundTruth:
         """Take all of the room as within reach."""
-        return cls(known, poses, room.sample_free(20_000, Disc().radius, np.random.default_rng(0)))
+        return cls(train, poses, room.sample_free(20_000, Disc().radius, np.random.default_rng(0)))
 
     def maps(self, rates: Float[np.ndarray, "views cells"]) -> RateMaps:
         """Rate maps on bins that all populations share; a cell without a compass, of rate NaN, is silent."""
-        walked = np.concatenate([self.known[:, :2], self.poses[:, :2]])
+        walked = np.concatenate([self.train[:, :2], self.poses[:, :2]])
         edges = bin_edges(np.concatenate([walked, self.reachable]))
         return rate_maps(np.nan_to_num(rates), self.poses[:, :2], edges=edges, visited=edges.visited(walked))
 
@@ -101,7 +101,7 @@ class Ground(NamedTuple):
         """Rate maps and tuning curves, to be drawn."""
         return Tuning(self.maps(rates), tuning_curves(np.nan_to_num(rates), self.poses[:, 2]))
 
-    def measure(self, rates: Float[np.ndarray, "views cells"]) -> Measured:
+    def measure(self, rates: Float[np.ndarray, "views cells"]) -> CellMetrics:
         """Measure every cell both as a place cell and as a head-direction cell."""
         positions, headings = self.poses[:, :2], self.poses[:, 2]
         rates, maps = np.nan_to_num(rates), self.maps(rates)
@@ -113,20 +113,20 @@ class Ground(NamedTuple):
         covered = place_coverage(
             place_fields(maps), place["passing"].to_numpy(), maps.edges.visited(self.reachable)
         )
-        return Measured(table, covered)
+        return CellMetrics(table, covered)
 
     def position(
-        self, known: Float[np.ndarray, "train signals"], asked: Float[np.ndarray, "views signals"]
+        self, train: Float[np.ndarray, "train signals"], test: Float[np.ndarray, "views signals"]
     ) -> dict[str, float]:
         """Errors of the positions that 4-nearest-neighbour regression reads from signals."""
-        away = position_errors(known, self.known[:, :2], asked, self.poses[:, :2])
+        away = position_errors(train, self.train[:, :2], test, self.poses[:, :2])
         return {
             "position_median_m": float(np.median(away)),
             "position_p95_m": float(np.percentile(away, 95)),
         }
 
 
-class Measured(NamedTuple):
+class CellMetrics(NamedTuple):
     """A population, measured."""
 
     table: pd.DataFrame
@@ -158,7 +158,7 @@ def map_correlations(first: RateMaps, second: RateMaps) -> Float[np.ndarray, "ce
     return correlations(one, other)
 
 
-def as_one_table(populations: dict[str, Measured]) -> pd.DataFrame:
+def as_one_table(populations: dict[str, CellMetrics]) -> pd.DataFrame:
     """Join the tables of several populations, with their names in the column `population`."""
     parts = [found.table.reset_index().assign(population=name) for name, found in populations.items()]
     return pd.concat(parts, ignore_index=True)
@@ -166,5 +166,5 @@ def as_one_table(populations: dict[str, Measured]) -> pd.DataFrame:
 
 def _median(table: pd.DataFrame, *columns: str) -> dict[str, float]:
     """Medians over the cells that have a value, left out where none has."""
-    known = table[list(columns)].median().dropna()
-    return {str(name): float(value) for name, value in known.items()}
+    medians = table[list(columns)].median().dropna()
+    return {str(name): float(value) for name, value in medians.items()}

@@ -24,7 +24,7 @@ _NOSE = Nose()
 
 
 @dataclass(frozen=True)
-class Setting:
+class Conditions:
     """What every experiment is told."""
 
     room: Arena
@@ -46,7 +46,7 @@ class Setting:
     """To look through; the experiment's own when None."""
     map: Mapping[str, Any] = field(default_factory=dict)
     """Parameters of `CognitiveMap` that differ from the experiment's own."""
-    further: tuple[Arena, ...] = ()
+    extra_rooms: tuple[Arena, ...] = ()
     """Rooms to visit after the first, by an experiment of several."""
 
     def explore(

@@ -33,7 +33,7 @@ from cogmap.errors import CogmapError
 from cogmap.evaluation.homology_of_map import homologies
 from cogmap.evaluation.scoring import score
 from cogmap.experiments.conditions import FRESH, FRESH_SEED, poses_of
-from cogmap.experiments.provenance import write_about
+from cogmap.experiments.provenance import write_provenance
 from cogmap.inputs import checked_count
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import CognitiveMap
@@ -158,8 +158,8 @@ def demo(
         }
         if folder is not None:
             (folder / METRICS).write_text(json.dumps(metrics, indent=2) + "\n", encoding="utf-8")
-            different = {} if landmarks == LANDMARKS else {"landmarks": landmarks}
-            write_about(folder, ("demo",), room, views=views, charts=charts, seed=seed, **different)
+            overrides = {} if landmarks == LANDMARKS else {"landmarks": landmarks}
+            write_provenance(folder, ("demo",), room, views=views, charts=charts, seed=seed, **overrides)
         return metrics
 
 

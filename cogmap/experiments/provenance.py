@@ -12,7 +12,7 @@ from typing import Any
 
 from arena import Arena, gallery
 
-ABOUT = "about.json"
+PROVENANCE = "about.json"
 ROOM = "arena.toml"
 """The room of a result, where the gallery has no such room."""
 PACKAGES = (
@@ -22,7 +22,7 @@ PACKAGES = (
 """Those whose version may change a figure."""
 
 
-def write_about(folder: Path, words: tuple[str, ...], room: Arena | None, **options: Any) -> None:
+def write_provenance(folder: Path, words: tuple[str, ...], room: Arena | None, **options: Any) -> None:
     """Write `about.json`, and the room where it is none of the gallery; no times, no names of machines.
 
     Parameters
@@ -44,7 +44,7 @@ def write_about(folder: Path, words: tuple[str, ...], room: Arena | None, **opti
         "different": {key: repr(value) for key, value in options.items() if key not in said},
         "versions": versions(),
     }
-    (folder / ABOUT).write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
+    (folder / PROVENANCE).write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
 
 
 def _where(folder: Path, room: Arena | None) -> tuple[str, ...]:

@@ -107,12 +107,12 @@ class BagOfWords(TransformerMixin, BaseEstimator):
         rest = [block for block in blocks if block not in sample]
         with self._bar(X) as bar, one_thread():
             described = list(self._over(_describe, X, sample, bar))
-            kinds = (np.concatenate([one.values for one in kind]) for kind in zip(*described, strict=True))
+            kinds = (np.concatenate([item.values for item in kind]) for kind in zip(*described, strict=True))
             self.vocabulary_, self.palette_ = (
                 learn_words(kind, count, seed) for kind, count in zip(kinds, counts, strict=True)
             )
-            known = [_show(one, self._words) for one in described]
-            shown = [*known, *self._over(partial(_read, words=self._words), X, rest, bar)]
+            shown = [_show(item, self._words) for item in described]
+            shown = [*shown, *self._over(partial(_read, words=self._words), X, rest, bar)]
         order = np.argsort([block.start for block in (*sample, *rest)])
         shown = sp.vstack([shown[block] for block in order], format="csr")
         occurrences = np.bincount(shown.indices, minlength=shown.shape[1])
@@ -173,10 +173,10 @@ def _read(images: Images, words: tuple[Rows, Rows]) -> sp.csr_array:
 def _show(described: tuple[Descriptors, Descriptors], words: tuple[Rows, Rows]) -> sp.csr_array:
     """Tell which words occur in each image."""
     rows, columns, offset = [], [], 0
-    for (values, counts), known in zip(described, words, strict=True):
-        if len(known):
+    for (values, counts), vocabulary in zip(described, words, strict=True):
+        if len(vocabulary):
             rows.append(np.repeat(np.arange(len(counts)), counts))
-            columns.append(offset + nearest_words(values, known))
-            offset += len(known)
+            columns.append(offset + nearest_words(values, vocabulary))
+            offset += len(vocabulary)
     spots = np.concatenate(rows), np.concatenate(columns)
     return sp.csr_array((np.ones(len(spots[0]), bool), spots), shape=(len(described[0].counts), offset))

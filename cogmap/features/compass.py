@@ -62,20 +62,20 @@ def _turns(
 ) -> Float[np.ndarray, "pairs"]:
     sharp = (_f * np.exp(-np.square(_f / FINEST))) ** 2
     likeness = fft.irfft((first * second.conj()).sum(axis=1) * sharp, 2 * COLUMNS, axis=1)
-    whole = likeness.argmax(axis=1).astype(np.float32) * np.float32(np.pi / COLUMNS)
+    coarse = likeness.argmax(axis=1).astype(np.float32) * np.float32(np.pi / COLUMNS)
     low = np.exp(-0.5 * np.square(BLUR * _f))
     first = first * low
-    second = second * np.exp(-1j * whole[:, None, None] * _f) * low
+    second = second * np.exp(-1j * coarse[:, None, None] * _f) * low
     change = fft.irfft(second - first, COLUMNS, axis=2)
     slope = fft.irfft((first + second) * (0.5j * _f), COLUMNS, axis=2)
     moved = _windowed((slope * change).sum(axis=1))
-    told = _windowed(np.square(slope).sum(axis=1))
+    certainty = _windowed(np.square(slope).sum(axis=1))
     # Where nothing has an edge the flow is taken for none.
-    flow = moved / (told + 1e-3 * told.mean(axis=1, keepdims=True) + 1e-12)
+    flow = moved / (certainty + 1e-3 * certainty.mean(axis=1, keepdims=True) + 1e-12)
     behind = np.roll(flow, COLUMNS // 2, axis=1)
     unequal = np.square(flow - behind)
     weight = 1 / (unequal + 0.1 * np.median(unequal, axis=1, keepdims=True) + 1e-8)
-    turn = whole + (weight * (flow + behind) / 2).sum(axis=1) / weight.sum(axis=1)
+    turn = coarse + (weight * (flow + behind) / 2).sum(axis=1) / weight.sum(axis=1)
     return np.asarray(_wrapped(turn.astype(np.float64)))
 
 
@@ -84,7 +84,7 @@ def _windowed(values: Float32[np.ndarray, "pairs columns"]) -> Float32[np.ndarra
     return np.asarray(fft.irfft(spectrum, COLUMNS, axis=1))
 
 
-def common_north(
+def synchronise_headings(
     graph: sp.csr_array, edges: Int[np.ndarray, "edges 2"], turned: Float[np.ndarray, "edges"]
 ) -> Float[np.ndarray, "views"]:
     r"""Give each view a heading, so that headings differ over the edges by the turns found there.

@@ -33,10 +33,10 @@ def keypoints(images: UInt8[np.ndarray, "images height width 3"]) -> Descriptors
     sift = cv2.SIFT_create()  # type: ignore[attr-defined]
     found = [sift.detectAndCompute(cv2.cvtColor(image, cv2.COLOR_RGB2GRAY), None)[1] for image in images]
     none = np.empty((0, sift.descriptorSize()), np.float32)
-    values = np.concatenate([none, *(one for one in found if one is not None)])
+    values = np.concatenate([none, *(item for item in found if item is not None)])
     # A descriptor may be all zero.
     values /= np.maximum(values.sum(axis=1, keepdims=True), 1)
-    return Descriptors(np.sqrt(values), np.array([0 if one is None else len(one) for one in found]))
+    return Descriptors(np.sqrt(values), np.array([0 if item is None else len(item) for item in found]))
 
 
 def patches(images: UInt8[np.ndarray, "images height width 3"]) -> Descriptors:

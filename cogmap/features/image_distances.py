@@ -74,8 +74,8 @@ def earth_mover_distances(queries: Any, views: Any) -> Distances:
     found = np.empty((queries.shape[0], views.shape[0]))
     for first in range(0, views.shape[0], BLOCK):
         theirs = _cumulative_light(np.asarray(views[first : first + BLOCK]))
-        for query, one in enumerate(ours):
-            ahead = one - theirs
+        for query, item in enumerate(ours):
+            ahead = item - theirs
             ahead -= np.median(ahead, axis=1, keepdims=True)
             found[query, first : first + BLOCK] = np.abs(ahead).mean(axis=(1, 2))
     return 2 * np.pi * found

@@ -12,7 +12,7 @@ from sklearn.decomposition import PCA
 from sklearn.utils.validation import check_is_fitted
 
 from cogmap.errors import CogmapError
-from cogmap.features.compass import common_north, turns
+from cogmap.features.compass import synchronise_headings, turns
 from cogmap.features.strips import strips
 from cogmap.graph.knn import nearest_points
 from cogmap.graph.neighbour_graph import neighbour_graph
@@ -68,17 +68,17 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
     def fit_transform(self, X: Any, y: object = None) -> Float[np.ndarray, "views features"]:
         """Learn components and north from panoramas, and give the features of these."""
         del y
-        self._known = strips(X)
-        count = len(self._known.still)
-        if not np.ptp(self._known.still, axis=0).any():
+        self._train = strips(X)
+        count = len(self._train.turn_invariant)
+        if not np.ptp(self._train.turn_invariant, axis=0).any():
             raise CogmapError(f"{count} panoramas are all alike; explore more than one place")
         components = min(checked_count("components", self.components), count)
         neighbours = min(checked_count("neighbours", self.neighbours), count - 1)
         with one_thread():
-            sample = self._known.still[:: -(-count // SAMPLE)]
+            sample = self._train.turn_invariant[:: -(-count // SAMPLE)]
             components = min(components, *sample.shape)
             self._axes = PCA(components, svd_solver="covariance_eigh").fit(sample)
-            found = self._axes.transform(self._known.still).astype(np.float64)
+            found = self._axes.transform(self._train.turn_invariant).astype(np.float64)
             self._scale = 1 / np.sqrt(found.var(axis=0).sum())
             self._places = self._scale * found
             self.headings_ = self._north(neighbours)
@@ -87,19 +87,19 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
     def transform(self, X: Any) -> Float[np.ndarray, "views features"]:
         """Give the features of other panoramas."""
         check_is_fitted(self)
-        asked = strips(X)
+        test = strips(X)
         with one_thread():
-            places = self._scale * self._axes.transform(asked.still).astype(np.float64)
+            places = self._scale * self._axes.transform(test.turn_invariant).astype(np.float64)
             nearest = nearest_points(self._places, min(NEAREST, len(self._places)), queries=places).indices
             pairs = np.column_stack([np.repeat(np.arange(len(places)), nearest.shape[1]), nearest.ravel()])
-            told = self.headings_[pairs[:, 1]] + turns(asked, pairs, self._known)
-        headings = np.angle(np.exp(1j * told).reshape(nearest.shape).sum(axis=1))
+            label = self.headings_[pairs[:, 1]] + turns(test, pairs, self._train)
+        headings = np.angle(np.exp(1j * label).reshape(nearest.shape).sum(axis=1))
         return self._features(places, headings)
 
     def _north(self, neighbours: int) -> Float[np.ndarray, "views"]:
         graph = neighbour_graph(self._places, neighbours)
         edges = np.column_stack(sp.triu(graph, 1).nonzero())
-        return common_north(graph, edges, turns(self._known, edges))
+        return synchronise_headings(graph, edges, turns(self._train, edges))
 
     def _features(
         self, places: Float[np.ndarray, "views components"], headings: Float[np.ndarray, "views"]

@@ -24,7 +24,7 @@ class Strips(NamedTuple):
 
     grey: Complex64[np.ndarray, "views rows frequencies"]
     """Of the brightness; a turn to the left by Δ multiplies frequency f by exp(−i f Δ)."""
-    still: Float32[np.ndarray, "views features"]
+    turn_invariant: Float32[np.ndarray, "views features"]
     """Magnitudes for each row, colour and frequency: a turn does not change them."""
 
 
@@ -42,12 +42,12 @@ def strips(views: Any) -> Strips:
         raise CogmapError(f"panoramas are {width} columns wide; give at least {2 * FREQUENCIES}")
     edges = np.unique(np.linspace(0, height, min(ROWS, height) + 1).astype(int))
     grey = np.empty((count, len(edges) - 1, FREQUENCIES), np.complex64)
-    still = np.empty((count, 3 * (len(edges) - 1) * FREQUENCIES), np.float32)
+    turn_invariant = np.empty((count, 3 * (len(edges) - 1) * FREQUENCIES), np.float32)
     share = np.diff(edges).astype(np.float32)[:, None, None]
     for first in range(0, count, BLOCK):
         block = np.asarray(views[first : first + BLOCK]).astype(np.float32)
         rows = np.add.reduceat(block, edges[:-1], axis=1) / share
         series = fft.rfft(rows, axis=2)[:, :, :FREQUENCIES] / width
         grey[first : first + BLOCK] = series.mean(axis=3)
-        still[first : first + BLOCK] = np.abs(series).reshape(len(block), -1)
-    return Strips(grey, still)
+        turn_invariant[first : first + BLOCK] = np.abs(series).reshape(len(block), -1)
+    return Strips(grey, turn_invariant)

@@ -105,10 +105,10 @@ def _by_direction(cloud: Checked, queries: Checked | None, neighbours: int, exac
     cloud, queries = normalize(cloud), None if queries is None else normalize(queries)
     if cloud.shape[0] <= exact:
         return _by_products(cloud, queries, neighbours)
-    asked = cloud if queries is None else queries
-    pointing, asking = (np.flatnonzero(abs(part).sum(axis=1)) for part in (cloud, asked))
+    test = cloud if queries is None else queries
+    pointing, asking = (np.flatnonzero(abs(part).sum(axis=1)) for part in (cloud, test))
     found = _by_descent(cloud[pointing], None if queries is None else queries[asking], neighbours)
-    indices = np.full((asked.shape[0], neighbours), -1)
+    indices = np.full((test.shape[0], neighbours), -1)
     distances = np.full(indices.shape, np.inf)
     indices[asking] = np.where(found.distances < RIGHT_ANGLE, pointing[found.indices], -1)
     distances[asking] = np.where(found.distances < RIGHT_ANGLE, found.distances, np.inf)

@@ -83,11 +83,11 @@ class Localiser:
             raise CogmapError("give codes of both the remembered views and the query, or of neither")
         if not self.ridge > 0:
             raise CogmapError(f"ridge is {self.ridge}; give a number above 0")
-        known = _codes(self.features if self.codes is None else self.codes, self.features.shape[0])
-        asked = _codes(query if codes is None else codes, query.shape[0])
-        if known.shape[1] != asked.shape[1]:
+        train = _codes(self.features if self.codes is None else self.codes, self.features.shape[0])
+        test = _codes(query if codes is None else codes, query.shape[0])
+        if train.shape[1] != test.shape[1]:
             raise CogmapError(
-                f"codes of the query have {asked.shape[1]} features but those of the views {known.shape[1]}; "
+                f"codes of the query have {test.shape[1]} features but those of the views {train.shape[1]}; "
                 "make both alike"
             )
         count = min(checked_count("neighbours", self.neighbours), self.features.shape[0])
@@ -96,17 +96,17 @@ class Localiser:
         with one_thread():
             for first in range(0, len(indices), BLOCK):
                 block = slice(first, first + BLOCK)
-                weights[block] = self._weigh(known, indices[block], asked[block])
+                weights[block] = self._weigh(train, indices[block], test[block])
         return Location(indices, weights)
 
     def _weigh(
         self,
-        known: Float[np.ndarray, "views codes"],
+        train: Float[np.ndarray, "views codes"],
         indices: Int[np.ndarray, "queries neighbours"],
-        asked: Float[np.ndarray, "queries codes"],
+        test: Float[np.ndarray, "queries codes"],
     ) -> Float[np.ndarray, "queries neighbours"]:
         share = (indices >= 0) / np.maximum((indices >= 0).sum(axis=1, keepdims=True), 1)
-        near = known[indices].astype(np.float64)
+        near = train[indices].astype(np.float64)
         mean = np.einsum("qk,qkc->qc", share, near)
         near -= mean[:, None]
         near *= np.sqrt(share)[:, :, None]
@@ -114,7 +114,7 @@ class Localiser:
         spread = np.trace(products, axis1=1, axis2=2)
         # Equal codes have no spread, and then no view is more like the query than another.
         products += np.eye(len(share[0])) * (self.ridge * spread + (spread == 0))[:, None, None]
-        sought = near @ (asked - mean)[:, :, None]
+        sought = near @ (test - mean)[:, :, None]
         weights: np.ndarray = share + np.sqrt(share) * np.linalg.solve(products, sought)[:, :, 0]
         weights[indices[:, 0] < 0] = np.nan
         return weights

@@ -99,13 +99,13 @@ class VisualRoadmap:
 
     def nearest(self, view: Cloud) -> int:
         """Give the index of the remembered view nearest to one given by its features."""
-        asked = self._prepared(view if sp.issparse(view) or view.ndim != 1 else view[None])
-        known, squares = self._known
-        if asked.shape != (1, known.shape[1]):
+        test = self._prepared(view if sp.issparse(view) or view.ndim != 1 else view[None])
+        train, squares = self._train
+        if test.shape != (1, train.shape[1]):
             raise CogmapError(
-                f"the view has features of shape {view.shape}; give one row of {known.shape[1]} features"
+                f"the view has features of shape {view.shape}; give one row of {train.shape[1]} features"
             )
-        products = known @ (asked.toarray() if sp.issparse(asked) else asked)[0]
+        products = train @ (test.toarray() if sp.issparse(test) else test)[0]
         return int(np.argmin(squares - 2 * products))
 
     @cached_property
@@ -123,10 +123,10 @@ class VisualRoadmap:
         return components(self.graph)
 
     @cached_property
-    def _known(self) -> tuple[Checked, Float[np.ndarray, "views"]]:
-        known = self._prepared(self.features)
-        squares = known.multiply(known).sum(axis=1) if sp.issparse(known) else (known**2).sum(axis=1)
-        return known, np.asarray(squares)
+    def _train(self) -> tuple[Checked, Float[np.ndarray, "views"]]:
+        train = self._prepared(self.features)
+        squares = train.multiply(train).sum(axis=1) if sp.issparse(train) else (train**2).sum(axis=1)
+        return train, np.asarray(squares)
 
     def _prepared(self, views: Cloud) -> Checked:
         checked = checked_cloud(views)

@@ -133,17 +133,17 @@ def plot_trend(
             _draw(axes, summarise(table, statistic, [name]), axis, line="-", label="", mark=0)
         else:
             every = summarise(table, statistic, [name, other])
-            for mark, (value, some) in enumerate(every.groupby(other, sort=True)):
-                _draw(axes, some, axis, line="-", label=_short(value), mark=mark)
+            for mark, (value, batch) in enumerate(every.groupby(other, sort=True)):
+                _draw(axes, batch, axis, line="-", label=_short(value), mark=mark)
             if len(every):
                 tidy_legend(axes, title=_called(other, called), loc="beside")
         _draw_doubted(axes, table, statistic, axis)
         _scale(axes, axis)
     seeds = table["seed"].nunique()
     lost = int((~_is_sound(table)).sum())
-    told = f"mean of {seeds} seeds with 95 % confidence intervals" if seeds > 1 else "one seed"
+    label = f"mean of {seeds} seeds with 95 % confidence intervals" if seeds > 1 else "one seed"
     doubt = f"; {lost} of {len(table)} rows failed or are not trusted (×) and left out" if lost else ""
-    figure.suptitle(told + doubt, fontsize=SMALL, color=INK)
+    figure.suptitle(label + doubt, fontsize=SMALL, color=INK)
     return figure
 
 

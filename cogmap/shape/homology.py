@@ -205,9 +205,9 @@ def _without_outliers(spread: Landmarks, limit: float) -> Float[np.ndarray, "kep
 
 
 def _majority(found: tuple[_Found, ...]) -> tuple[_Found, int]:
-    tally = Counter(one.number for one in found)
+    tally = Counter(item.number for item in found)
     number, votes = min(tally.items(), key=lambda entry: (-entry[1], entry[0]))
-    return next(one for one in found if one.number == number), votes
+    return next(item for item in found if item.number == number), votes
 
 
 def _over(found: Float[np.ndarray, "bars"], threshold: float, which: int) -> float | None:

@@ -59,7 +59,7 @@ class Ledger:
             When the folder holds something else, someone else is at it, or it cannot be written.
         """
         self._check_own()
-        with writing(self.folder):
+        with disk_errors(self.folder):
             self.work.mkdir(parents=True, exist_ok=True)
         lock = FileLock(self.work / "sweep.lock")
         try:
@@ -108,7 +108,7 @@ class Ledger:
     def replacing(self, path: Path) -> Iterator[Path]:
         """Give a path to write to; the file takes the place of `path` once it is whole and on the disk."""
         fresh = self.work / f"{path.stem}.{os.getpid()}{path.suffix}"
-        with writing(self.folder):
+        with disk_errors(self.folder):
             try:
                 yield fresh
                 with fresh.open("rb+") as file:
@@ -146,16 +146,16 @@ class Ledger:
                 )
         else:
             described = plan.model_dump(mode="json", by_alias=True, exclude_defaults=True)
-            told = {"format": FORMAT, "digest": digest, **described}
+            header = {"format": FORMAT, "digest": digest, **described}
             with self.replacing(mark) as fresh:
-                fresh.write_text(json.dumps(told, indent=2) + "\n", encoding="utf-8")
-        with writing(self.folder):
+                fresh.write_text(json.dumps(header, indent=2) + "\n", encoding="utf-8")
+        with disk_errors(self.folder):
             for folder in (self.folder / "points", self.walks):
                 folder.mkdir(exist_ok=True)
 
 
 @contextmanager
-def writing(folder: Path) -> Iterator[None]:
+def disk_errors(folder: Path) -> Iterator[None]:
     """Turn what goes wrong with the disk into a sentence."""
     try:
         yield

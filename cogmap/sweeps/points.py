@@ -33,9 +33,9 @@ class Point:
     seed: int
     views: int
     room: Arena
-    elsewhere: bool
+    any_room: bool
     """Whether the experiment is told the room; else it takes its own, or all of its own."""
-    different: dict[str, Any]
+    overrides: dict[str, Any]
     """`nose`, `motion`, `camera` and `map`, where they are given."""
 
     @cached_property
@@ -43,7 +43,7 @@ class Point:
         """All that the outcome depends on, as JSON knows it."""
         parts = {
             name: part if name == "map" else {"kind": type(part).__name__, **part.model_dump(mode="json")}
-            for name, part in self.different.items()
+            for name, part in self.overrides.items()
         }
         room = self.room.model_dump(mode="json", exclude_defaults=True)
         return {
@@ -92,11 +92,11 @@ def _settle(name: str, chosen: Experiment, given: Mapping[str, Any]) -> dict[str
     if unknown:
         known = ["views", "arena", "motion", "camera", "nose.noise", "map.charts"]
         raise _unknown(next(part for part in given if part.split(".")[0] in unknown), known)
-    if "arena" in families and not chosen.elsewhere:
+    if "arena" in families and not chosen.any_room:
         raise CogmapError(f"{name} takes place in rooms of its own; leave {_first(given, 'arena')} out")
     for family in ("motion", "camera", "nose", "map"):
         if family in families and family not in chosen.takes:
-            takes = ", ".join(("views", *(["arena"] if chosen.elsewhere else []), *chosen.takes))
+            takes = ", ".join(("views", *(["arena"] if chosen.any_room else []), *chosen.takes))
             raise CogmapError(f"{name} does not take {_first(given, family)}; it takes {takes}")
     build: dict[str, Callable[[Mapping[str, Any]], Any]] = {
         "motion": _motion,
@@ -107,8 +107,8 @@ def _settle(name: str, chosen: Experiment, given: Mapping[str, Any]) -> dict[str
     return {
         "views": checked_count("views", given.get("views", chosen.views), FEWEST),
         "room": _room(given, chosen),
-        "elsewhere": "arena" in families,
-        "different": {family: build[family](given) for family in build if family in families},
+        "any_room": "arena" in families,
+        "overrides": {family: build[family](given) for family in build if family in families},
     }
 
 
@@ -155,7 +155,7 @@ def _fields(given: Mapping[str, Any], family: str, known: Collection[str]) -> di
         if start != family or name in ("arena", "motion", "camera"):
             continue
         if key not in known:
-            raise _unknown(name, [f"{family}.{one}" for one in known])
+            raise _unknown(name, [f"{family}.{item}" for item in known])
         found[key] = value
     return found
 

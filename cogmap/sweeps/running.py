@@ -17,7 +17,7 @@ from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from cogmap.errors import CogmapError
 from cogmap.experiments.registry import EXPERIMENTS, Experiment, experiment
-from cogmap.sweeps.ledger import KEPT, MARK, Ledger, is_full_disk, writing
+from cogmap.sweeps.ledger import KEPT, MARK, Ledger, disk_errors, is_full_disk
 from cogmap.sweeps.points import Point
 from cogmap.sweeps.table import comparable
 
@@ -55,7 +55,7 @@ def do(task: Task) -> None:
         raise CogmapError(
             f"a worker finds no sweep in {ledger.folder}; choose a folder that all workers share"
         )
-    with writing(ledger.folder), _alone, ledger.lock(point):
+    with disk_errors(ledger.folder), _alone, ledger.lock(point):
         known = ledger.read(point)
         if known is None or (task.again and "error" in known):
             ledger.write(point, _outcome(task))
@@ -69,11 +69,11 @@ def _outcome(task: Task) -> dict[str, Any]:
             warnings.simplefilter("ignore")  # the table says which maps are not trusted
             found = experiment(
                 point.experiment,
-                room=point.room if point.elsewhere else None,
+                room=point.room if point.any_room else None,
                 views=point.views,
                 seed=point.seed,
                 library=task.ledger.walks,
-                **point.different,
+                **point.overrides,
             )
         metrics: dict[str, Any] = json.loads(json.dumps(comparable(found.metrics)))
     except Exception as error:  # noqa: BLE001  whatever a point raises is its outcome

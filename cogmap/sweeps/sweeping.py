@@ -9,11 +9,11 @@ import pandas as pd
 from tqdm import tqdm
 
 from cogmap.errors import CogmapError
-from cogmap.experiments.provenance import write_about
+from cogmap.experiments.provenance import write_provenance
 from cogmap.experiments.registry import EXPERIMENTS
 from cogmap.inputs import checked_count
 from cogmap.plots.sweep import plot_trend, statistics_of
-from cogmap.sweeps.ledger import Ledger, Record, writing
+from cogmap.sweeps.ledger import Ledger, Record, disk_errors
 from cogmap.sweeps.plan import Plan
 from cogmap.sweeps.points import Point, points_of
 from cogmap.sweeps.running import Task, on_cluster, on_this_machine
@@ -108,7 +108,7 @@ def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
     with ledger.replacing(ledger.folder / "table.parquet") as fresh:
         table.to_parquet(fresh, index=False)
     figures, fresh = ledger.folder / "figures", ledger.work / "figures"
-    with writing(ledger.folder):
+    with disk_errors(ledger.folder):
         shutil.rmtree(fresh, ignore_errors=True)
         fresh.mkdir()
         for name in statistics_of(table, plan.varied):
@@ -124,4 +124,4 @@ def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
         shutil.rmtree(figures, ignore_errors=True)
         fresh.rename(figures)
         (ledger.folder / PLAN).write_text(plan.to_toml(), encoding="utf-8")
-        write_about(ledger.folder, ("sweep", PLAN), None)
+        write_provenance(ledger.folder, ("sweep", PLAN), None)

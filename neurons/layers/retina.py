@@ -97,9 +97,9 @@ class Retina(nn.Module):
     def forward(self, views: UInt8[Tensor, "views height width 3"]) -> Float[Tensor, "views features"]:
         """Turn views into normalised strips, rows × colours × columns."""
         # as floats, so many views fit the processor's cache
-        return torch.cat([self._strips(some) for some in views.split(16)])
+        return torch.cat([self._strips(batch) for batch in views.split(16)])
 
-    def _strips(self, views: UInt8[Tensor, "some height width 3"]) -> Float[Tensor, "some features"]:
+    def _strips(self, views: UInt8[Tensor, "batch height width 3"]) -> Float[Tensor, "batch features"]:
         rows = self.average @ views.float().flatten(2)
         colours = rows.unflatten(2, (-1, 3)).transpose(2, 3).flatten(1, 2)
         strip = colours @ self.centre_surround

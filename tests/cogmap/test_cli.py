@@ -174,7 +174,7 @@ def test_a_room_without_free_space_is_refused(run, tmp_path: Path) -> None:
         (["demo", "--arena", "nowhere.toml"], "nowhere.toml"),
         (["explore", "furnished", "--views", 0], "views is 0"),
         (["explore", "furnished", "--width", -1], "width"),
-        (["explore", "furnished", "--noise", "nan"], "noise"),
+        (["explore", "furnished", "--nose-noise", "nan"], "noise"),
         (["explore", "furnished", "--seed", -1], "seed"),
         (["explore", "furnished", "--motion", "waltz"], "waltz"),
         (["explore", "furnished", "--motion", "chemotaxis", "--odorant", 3], "3 odour sources"),

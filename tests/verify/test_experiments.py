@@ -56,7 +56,7 @@ BARS: dict[str, list[tuple[str, str, Any]]] = {
         ("fused/heading_median_deg", "≤", 2.5),
         ("fused/metric_map_r2", "≥", 0.99),
     ],
-    "walks": [
+    "slow_features": [
         ("brownian/slow_features/place_cells_passing", "≥", 0.8),
         ("brownian/slow_features/heading_cells_passing", "=", 0),
         ("slow_turning/slow_features/place_cells_passing", "=", 0),
@@ -72,7 +72,7 @@ BARS: dict[str, list[tuple[str, str, Any]]] = {
         ("shuffled/fused/heading_median_deg", "≤", 3),
         ("shuffled/fused/heading_resultant", "≥", 0.996),
     ],
-    "sources": [
+    "odour_ablation": [
         ("2_sources_0.1_noise/place_position_median_m", "≤", 0.13),
         ("2_sources_0.1_noise/place_position_p95_m", "≤", 0.4),
         ("2_sources_0.1_noise/single_field", "≥", 0.85),

@@ -23,7 +23,7 @@ EXPECTED = {
 CLOUDS = ("view_manifold", "fused", "place", "heading")
 
 
-def conduct(seed: int, out: Path) -> dict[str, Any]:
+def run(seed: int, out: Path) -> dict[str, Any]:
     command = [sys.executable, "-m", "cogmap", "experiment", "homology", "--out", out, "--json"]
     run = subprocess.run([*command, "--seed", str(seed)], capture_output=True, text=True, check=True)
     found: dict[str, Any] = json.loads(run.stdout)
@@ -33,7 +33,7 @@ def conduct(seed: int, out: Path) -> dict[str, Any]:
 def test_at_least_57_of_60_cases_are_right(tmp_path: Path) -> None:
     right, nerves = [], []
     for seed in SEEDS:
-        rooms = conduct(seed, tmp_path / str(seed))["rooms"]
+        rooms = run(seed, tmp_path / str(seed))["rooms"]
         assert rooms.keys() == EXPECTED.keys()
         for room, numbers in EXPECTED.items():
             for cloud, wanted in zip(CLOUDS, numbers, strict=True):

@@ -16,12 +16,12 @@ MOMENT = 0.05
 """Seconds by which the roadmap grows at a time, and that a query may take."""
 
 
-def answer(asked: dict[str, Any]) -> list[list[list[float]] | None]:
+def answer(request: dict[str, Any]) -> list[list[list[float]] | None]:
     """Grow one roadmap in SE(2), then plan between the pairs on it."""
-    arena = Arena.parse(asked["arena"])
-    free = arena.free_space(asked["radius"])
+    arena = Arena.parse(request["arena"])
+    free = arena.free_space(request["radius"])
     shapely.prepare(free)
-    util.RNG.setSeed(asked["seed"] + 1)
+    util.RNG.setSeed(request["seed"] + 1)
     space, bounds = base.SE2StateSpace(), base.RealVectorBounds(2)
     x0, y0, x1, y1 = free.bounds
     for axis, (low, high) in enumerate(((x0, x1), (y0, y1))):
@@ -35,10 +35,10 @@ def answer(asked: dict[str, Any]) -> list[list[list[float]] | None]:
     planner = geometric.PRM(setup.getSpaceInformation())
     setup.setPlanner(planner)
     setup.setup()
-    while planner.milestoneCount() < asked["milestones"]:
+    while planner.milestoneCount() < request["milestones"]:
         planner.growRoadmap(MOMENT)
     paths: list[list[list[float]] | None] = []
-    for pair in asked["pairs"]:
+    for pair in request["pairs"]:
         planner.clearQuery()
         ends = []
         for x, y, heading in pair:

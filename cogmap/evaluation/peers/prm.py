@@ -69,14 +69,14 @@ def prm_paths(
         "seed": seed,
     }
     with tempfile.TemporaryDirectory() as folder:
-        asked, answered = Path(folder) / "asked.json", Path(folder) / "answered.json"
-        asked.write_text(json.dumps(order), encoding="utf-8")
-        command = [sys.executable, "-m", "cogmap.evaluation.peers.ompl_worker", str(asked), str(answered)]
+        request, response = Path(folder) / "asked.json", Path(folder) / "answered.json"
+        request.write_text(json.dumps(order), encoding="utf-8")
+        command = [sys.executable, "-m", "cogmap.evaluation.peers.ompl_worker", str(request), str(response)]
         try:
             ended = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)  # noqa: S603
         except subprocess.TimeoutExpired:
             raise CogmapError(f"OMPL was not done after {PATIENCE} s; ask for fewer milestones") from None
-        if not answered.is_file():
+        if not response.is_file():
             raise CogmapError(f"OMPL failed with code {ended.returncode}: {ended.stderr.strip()[-500:]}")
-        paths = json.loads(answered.read_text(encoding="utf-8"))
+        paths = json.loads(response.read_text(encoding="utf-8"))
     return [None if path is None else np.array(path) for path in paths]

@@ -46,7 +46,7 @@ class _Stage(NamedTuple):
 
 
 def slow_cells(
-    walk: Float[np.ndarray, "views components"], *asked: Float[np.ndarray, "_ components"], seed: int = 0
+    walk: Float[np.ndarray, "views components"], *test: Float[np.ndarray, "_ components"], seed: int = 0
 ) -> list[SlowCells]:
     """Learn slow features of views in the order of a walk, make them sparse, and evoke them by other views.
 
@@ -58,7 +58,7 @@ def slow_cells(
     ----------
     walk
         Codes of views in the order in which they were seen.
-    *asked
+    *test
         Codes that evoke the cells.
     seed
         Of the independent components.
@@ -78,10 +78,10 @@ def slow_cells(
         second = learn_stage(middle, min(CELLS, middle.shape[1]))
         slow = second(middle)
         ica = FastICA(whiten="unit-variance", random_state=seed, max_iter=500).fit(slow)
-        known = ica.transform(slow)
-        sign = np.where((known**3).mean(axis=0) < 0, -1.0, 1.0)
-        most = np.maximum((sign * known).max(axis=0), np.finfo(float).tiny)
-        features = [sign * ica.transform(second(first(codes / scale))) for codes in asked]
+        train = ica.transform(slow)
+        sign = np.where((train**3).mean(axis=0) < 0, -1.0, 1.0)
+        most = np.maximum((sign * train).max(axis=0), np.finfo(float).tiny)
+        features = [sign * ica.transform(second(first(codes / scale))) for codes in test]
         return [SlowCells(found, PEAK * np.maximum(found, 0) / most) for found in features]
 
 

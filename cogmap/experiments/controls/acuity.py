@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from arena import Brownian, Camera, Recording
-from cogmap.evaluation.populations import MOST_CHARTS, Ground, grow_map, perceive, trust
+from cogmap.evaluation.populations import MOST_CHARTS, GroundTruth, grow_map, perceive, trust_report
 from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cases
 
@@ -25,7 +25,7 @@ RECEPTORS = 90
 LABELS = {"columns": "columns of the eye", "charts": "charts"}
 
 
-def acuity(setting: Setting) -> Result:
+def acuity(conditions: Conditions) -> Result:
     """Learn the same walk through coarser and coarser eyes, and with fewer and more charts.
 
     An eye of few columns has large pixels: 12 are 30° each. A view with fewer columns than the retina has
@@ -33,14 +33,17 @@ def acuity(setting: Setting) -> Result:
     usual number of charts is 3,000, or a third of the views when these are fewer than 9,000. Without a
     compass there is no error of heading.
     """
-    usual = min(MOST_CHARTS, setting.views // 3)
+    usual = min(MOST_CHARTS, conditions.views // 3)
     cases = [(columns, usual) for columns in COLUMNS]
     cases += [(USUAL_COLUMNS, round(part * usual)) for part in CHARTS if part != 1]
     metrics: dict[str, Any] = {}
     for columns in dict.fromkeys(columns for columns, _ in cases):
-        walk, fresh = look(setting, columns), look(setting, columns, fresh=True)
-        for charts in (some for width, some in cases if width == columns):
-            metrics[f"{columns}_columns_{charts}_charts"] = _learn(setting, walk, fresh, charts)
+        walk, fresh = (
+            explore_at_acuity(conditions, columns),
+            explore_at_acuity(conditions, columns, fresh=True),
+        )
+        for charts in (count for width, count in cases if width == columns):
+            metrics[f"{columns}_columns_{charts}_charts"] = _learn(conditions, walk, fresh, charts)
     rows = [{"columns": columns, "charts": charts} for columns, charts in cases]
     table = pd.DataFrame(
         [{**row, **metrics["{columns}_columns_{charts}_charts".format(**row)]} for row in rows]
@@ -52,22 +55,22 @@ def acuity(setting: Setting) -> Result:
     )
 
 
-def look(setting: Setting, columns: int, *, fresh: bool = False) -> Recording:
+def explore_at_acuity(conditions: Conditions, columns: int, *, fresh: bool = False) -> Recording:
     """Walk with an eye of so many columns, its pixels repeated until they are as many as receptors."""
     eye = Camera.panoramic(columns, columns // 6)
-    walk = setting.explore(Brownian(), eye, fresh=fresh)
+    walk = conditions.explore(Brownian(), eye, fresh=fresh)
     times = -(-RECEPTORS // columns)
     if times == 1:
         return walk
     return replace(walk, views=np.asarray(walk.views).repeat(times, axis=1).repeat(times, axis=2))
 
 
-def _learn(setting: Setting, walk: Recording, fresh: Recording, charts: int) -> dict[str, Any]:
-    cmap = grow_map(walk, {**setting.map, "charts": charts}, seed=setting.seed)
-    ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
-    known, asked = (perceive(cmap, one.views) for one in (walk, fresh))
+def _learn(conditions: Conditions, walk: Recording, fresh: Recording, charts: int) -> dict[str, Any]:
+    cmap = grow_map(walk, {**conditions.map, "charts": charts}, seed=conditions.seed)
+    truth = GroundTruth.of(conditions.room, poses_of(walk), poses_of(fresh))
+    train, test = (perceive(cmap, item.views) for item in (walk, fresh))
     return {
-        **ground.measure(asked.place).place_figures,
-        **score(asked, ground.poses, train=(known, ground.known), reachable=ground.reachable),
-        **trust(cmap),
+        **truth.measure(test.place).place_figures,
+        **score(test, truth.poses, train=(train, truth.train), reachable=truth.reachable),
+        **trust_report(cmap),
     }

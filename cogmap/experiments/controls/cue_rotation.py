@@ -11,8 +11,8 @@ from jaxtyping import Float
 from arena import Arena, Brownian, Camera, Recording
 from cogmap.cells import RateMaps, Tuning, bin_edges, mean_vectors, rate_maps, tuning_curves
 from cogmap.errors import CogmapError
-from cogmap.evaluation.populations import grow_map, map_correlations, perceive, trust
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.evaluation.populations import grow_map, map_correlations, perceive, trust_report
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_examples
 
@@ -23,7 +23,7 @@ SOURCES = ((-1.2, -1.0), (1.2, 0.6), (0.9, -1.2))
 """m; no turn of the room brings them to the same places."""
 
 
-def cue_rotation(setting: Setting) -> Result:
+def cue_rotation(conditions: Conditions) -> Result:
     """Learn a square room, then turn its walls by a quarter and walk again, in the light and in the dark.
 
     The walls are of the materials of the first four of the room that is given. A place cell follows the walls
@@ -32,21 +32,21 @@ def cue_rotation(setting: Setting) -> Result:
     `heading_shift_deg` is the median change of the preferred direction, counter-clockwise.
     """
     camera = Camera.panoramic()
-    rooms = {turns: square_room(setting.room, turns) for turns in (0, 1)}
+    rooms = {turns: square_room(conditions.room, turns) for turns in (0, 1)}
     walk, before, after = (
-        replace(setting, room=rooms[turns], seed=setting.seed + late).explore(
+        replace(conditions, room=rooms[turns], seed=conditions.seed + late).explore(
             Brownian(), camera, fresh=late > 0
         )
         for turns, late in ((0, 0), (0, 1), (1, 2))
     )
-    cmap = grow_map(walk, setting.map, seed=setting.seed)
+    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
     lit = perceive(cmap, before.views), perceive(cmap, after.views)
     dark = cmap.perceive(odours=before.odours), cmap.perceive(odours=after.odours)
     place = {
-        name: [_tuning(seen.place, one) for seen, one in zip(pair, (before, after), strict=True)]
+        name: [_tuning(seen.place, item) for seen, item in zip(pair, (before, after), strict=True)]
         for name, pair in (("light", lit), ("dark", dark))
     }
-    heading = [_tuning(seen.heading, one) for seen, one in zip(lit, (before, after), strict=True)]
+    heading = [_tuning(seen.heading, item) for seen, item in zip(lit, (before, after), strict=True)]
     table = pd.DataFrame(
         {
             f"{name}_{cue}": map_correlations(turned(cells[0].maps, turns), cells[1].maps)
@@ -69,7 +69,7 @@ def cue_rotation(setting: Setting) -> Result:
             },
             **{f"correlation_{name}": float(found) for name, found in table.median().items()},
             **({} if np.isnan(shift).any() else figures),
-            **trust(cmap),
+            **trust_report(cmap),
         },
         tables={"place_cells": table, "heading_cells": pd.DataFrame({"shift_deg": shift})},
         figures={

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from arena import Brownian, Camera
-from cogmap.evaluation.populations import Ground, as_one_table, grow_map, map_correlations, perceive
+from cogmap.evaluation.populations import GroundTruth, as_one_table, grow_map, map_correlations, perceive
 from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cell_types, plot_examples
 
 
-def darkness(setting: Setting) -> Result:
+def darkness(conditions: Conditions) -> Result:
     """Take one sense away from a map that has learnt with both.
 
     `sight` is the map looking with its nose blocked, `smell` the map in the dark, on the same fresh walk. In
@@ -20,27 +20,27 @@ def darkness(setting: Setting) -> Result:
     of the rate map in the dark with that in the light: whether the same cell means the same place.
     """
     camera = Camera.panoramic()
-    walk = setting.explore(Brownian(), camera)
-    fresh = setting.explore(Brownian(), camera, fresh=True)
-    cmap = grow_map(walk, setting.map, seed=setting.seed)
-    ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
-    train = perceive(cmap, walk.views), ground.known
+    walk = conditions.explore(Brownian(), camera)
+    fresh = conditions.explore(Brownian(), camera, fresh=True)
+    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
+    truth = GroundTruth.of(conditions.room, poses_of(walk), poses_of(fresh))
+    train = perceive(cmap, walk.views), truth.train
     light, dark = perceive(cmap, fresh.views), cmap.perceive(odours=fresh.odours)
-    smelt = cmap.perceive(odours=walk.odours), ground.known
+    smelt = cmap.perceive(odours=walk.odours), truth.train
     rates = {
         "sight, place": light.place,
         "sight, heading": light.heading,
         "smell, place": dark.place,
         "smell, heading": dark.heading,
     }
-    cells = {name: ground.measure(found) for name, found in rates.items()}
-    same = map_correlations(ground.maps(light.place), ground.maps(dark.place))
+    cells = {name: truth.measure(found) for name, found in rates.items()}
+    same = map_correlations(truth.maps(light.place), truth.maps(dark.place))
     table = as_one_table(cells)
     metrics = {
         name: {
             **cells[f"{name}, place"].place_figures,
             **cells[f"{name}, heading"].heading_figures,
-            **score(seen, ground.poses, train=learnt, reachable=ground.reachable),
+            **score(seen, truth.poses, train=learnt, reachable=truth.reachable),
         }
         for name, seen, learnt in (("sight", light, train), ("smell", dark, smelt))
     }
@@ -50,7 +50,7 @@ def darkness(setting: Setting) -> Result:
         figures={
             "cells": plot_cell_types(table),
             "examples": plot_examples(
-                {name: ground.tuning(found) for name, found in rates.items() if np.nan_to_num(found).any()}
+                {name: truth.tuning(found) for name, found in rates.items() if np.nan_to_num(found).any()}
             ),
         },
     )

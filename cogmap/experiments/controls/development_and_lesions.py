@@ -13,8 +13,8 @@ from sklearn.metrics import pairwise_distances_argmin
 
 from arena import Brownian, Camera
 from cogmap.cells.measures.correlations import correlations
-from cogmap.evaluation.populations import Ground, as_one_table, grow_map, perceive, trust
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.evaluation.populations import GroundTruth, as_one_table, grow_map, perceive, trust_report
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.lesions import afferent_weights, lesioned, weights_of, with_blank_afferents
@@ -43,11 +43,11 @@ class Rates(NamedTuple):
 class Seen(NamedTuple):
     """What a map makes of some training views and of fresh ones."""
 
-    known: Rates
-    asked: Rates
+    train: Rates
+    test: Rates
 
 
-def neurons(setting: Setting) -> Result:
+def development_and_lesions(conditions: Conditions) -> Result:
     """Look at the weights from which place cells and head-direction cells fire.
 
     `growth`: the afferents of a grown map are blanked, and learn from the same walk once more while smell and
@@ -61,23 +61,23 @@ def neurons(setting: Setting) -> Result:
     cells by linear regression of their cosine and sine; both know some 4,000 of the training views.
     """
     camera = Camera.panoramic()
-    walk = setting.explore(Brownian(), camera)
-    fresh = setting.explore(Brownian(), camera, fresh=True)
-    cmap = grow_map(walk, setting.map, seed=setting.seed)
+    walk = conditions.explore(Brownian(), camera)
+    fresh = conditions.explore(Brownian(), camera, fresh=True)
+    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
     step = max(1, len(walk) // REMEMBERED)
-    ground = Ground.of(setting.room, poses_of(walk)[::step], poses_of(fresh))
+    truth = GroundTruth.of(conditions.room, poses_of(walk)[::step], poses_of(fresh))
     views = np.asarray(walk.views[::step]), fresh.views
 
     growing, growth, begun = with_blank_afferents(cmap), [], 0
     for seen in [*(count for count in SEEN if count < len(walk)), len(walk)]:
         growing.partial_fit(walk.views[begun:seen], walk.odours[begun:seen])
         begun = seen
-        growth.append({"views": seen, **_figures(ground, _driven(growing, views))})
-    order = np.random.default_rng(setting.seed).permutation(cmap.charts)
+        growth.append({"views": seen, **_figures(truth, _driven(growing, views))})
+    order = np.random.default_rng(conditions.seed).permutation(cmap.charts)
     silencing = [
         {
             "silent": share,
-            **_figures(ground, _driven(lesioned(cmap, order[: round(share * len(order))]), views)),
+            **_figures(truth, _driven(lesioned(cmap, order[: round(share * len(order))]), views)),
         }
         for share in SILENT
     ]
@@ -88,11 +88,11 @@ def neurons(setting: Setting) -> Result:
     tables = {"growth": pd.DataFrame(growth), "silencing": pd.DataFrame(silencing)}
     return Result(
         metrics={
-            **trust(cmap),
-            "driven": _figures(ground, driven),
-            "direct": _figures(ground, direct),
+            **trust_report(cmap),
+            "driven": _figures(truth, driven),
+            "direct": _figures(truth, direct),
             "agreement": {
-                cells: _agreement(getattr(driven.asked, cells), getattr(direct.asked, cells))
+                cells: _agreement(getattr(driven.test, cells), getattr(direct.test, cells))
                 for cells in Rates._fields
             },
             "views_to_mature": {
@@ -104,7 +104,7 @@ def neurons(setting: Setting) -> Result:
             **tables,
             "cells": as_one_table(
                 {
-                    f"{name}, {cells}": ground.measure(getattr(seen.asked, cells))
+                    f"{name}, {cells}": truth.measure(getattr(seen.test, cells))
                     for name, seen in (("driven", driven), ("direct", direct))
                     for cells in Rates._fields
                 }
@@ -122,8 +122,8 @@ def neurons(setting: Setting) -> Result:
 
 def _driven(cmap: CognitiveMap, views: tuple[Any, Any]) -> Seen:
     """Rates from sight, through the weights."""
-    known, asked = (perceive(cmap, some) for some in views)
-    return Seen(Rates(known.place, known.heading), Rates(asked.place, asked.heading))
+    train, test = (perceive(cmap, batch) for batch in views)
+    return Seen(Rates(train.place, train.heading), Rates(test.place, test.heading))
 
 
 def _direct(cmap: CognitiveMap, views: tuple[Any, Any]) -> Seen:
@@ -132,22 +132,22 @@ def _direct(cmap: CognitiveMap, views: tuple[Any, Any]) -> Seen:
     cells = HeadDirectionCells(len(preferred), 1, generator=torch.Generator())
     cells.preferred = preferred
     found = []
-    for activity in (perceive(cmap, some) for some in views):
+    for activity in (perceive(cmap, batch) for batch in views):
         place = cmap.perceive(odours=np.exp(activity.odour)).place
         found.append(Rates(place, cells.tuning(torch.from_numpy(activity.phase)).numpy()))
     return Seen(*found)
 
 
-def _figures(ground: Ground, seen: Seen) -> dict[str, float]:
-    place, heading = (ground.measure(rates) for rates in seen.asked)
-    known, asked = (np.nan_to_num(some.heading).astype(float) for some in seen)
-    cosine, sine = Ridge(alpha=1.0).fit(known, _on_circle(ground.known[:, 2])).predict(asked).T
-    turned = np.angle(np.exp(1j * (np.arctan2(sine, cosine) - ground.poses[:, 2])))
+def _figures(truth: GroundTruth, seen: Seen) -> dict[str, float]:
+    place, heading = (truth.measure(rates) for rates in seen.test)
+    train, test = (np.nan_to_num(batch.heading).astype(float) for batch in seen)
+    cosine, sine = Ridge(alpha=1.0).fit(train, _on_circle(truth.train[:, 2])).predict(test).T
+    turned = np.angle(np.exp(1j * (np.arctan2(sine, cosine) - truth.poses[:, 2])))
     return {
         "place_cells_passing": place.place_figures["place_cells_passing"],
         "place_coverage": place.place_coverage,
         "heading_cells_passing": heading.heading_figures["heading_cells_passing"],
-        **ground.position(seen.known.place, seen.asked.place),
+        **truth.position(seen.train.place, seen.test.place),
         "heading_median_deg": float(np.rad2deg(np.median(np.abs(turned)))),
     }
 

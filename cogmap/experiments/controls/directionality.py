@@ -7,15 +7,15 @@ from typing import Any
 from arena import Brownian, Camera, Motion, Track
 from cogmap.cells import Tuning
 from cogmap.evaluation.populations import (
-    Ground,
-    Measured,
+    CellMetrics,
+    GroundTruth,
     as_one_table,
     competing_cells,
     grow_map,
     perceive,
-    trust,
+    trust_report,
 )
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cell_types, plot_examples
 
@@ -24,7 +24,7 @@ DIRECTIONAL = 0.5
 WALKS: dict[str, Motion] = {"open_field": Brownian(), "corridor": Track()}
 
 
-def directionality(setting: Setting) -> Result:
+def directionality(conditions: Conditions) -> Result:
     """Learn the same room all over and on a straight path, and ask in which direction its place cells fire.
 
     `directional` is the share of cells with a field whose in-field direction vector is longer than .5. On the
@@ -38,28 +38,28 @@ def directionality(setting: Setting) -> Result:
     (1994), Journal of Neuroscience 14: place cells are directional on paths and not in the open.
     """
     metrics: dict[str, Any] = {}
-    cells: dict[str, Measured] = {}
+    cells: dict[str, CellMetrics] = {}
     drawn: dict[str, dict[str, Tuning]] = {}
     for name, motion in WALKS.items():
-        walk = setting.explore(motion, Camera.panoramic())
-        fresh = setting.explore(motion, Camera.panoramic(), fresh=True)
-        known = poses_of(walk)
-        ground = Ground(known, poses_of(fresh), known[:, :2])
-        cmap = grow_map(walk, setting.map, seed=setting.seed)
+        walk = conditions.explore(motion, Camera.panoramic())
+        fresh = conditions.explore(motion, Camera.panoramic(), fresh=True)
+        train = poses_of(walk)
+        truth = GroundTruth(train, poses_of(fresh), train[:, :2])
+        cmap = grow_map(walk, conditions.map, seed=conditions.seed)
         codes = cmap.encode(walk.views), cmap.encode(fresh.views)
         rates = {
-            "vision_only": competing_cells(*codes, seed=setting.seed)[0],
+            "vision_only": competing_cells(*codes, seed=conditions.seed)[0],
             "fused": perceive(cmap, fresh.views).place,
         }
-        found = {kind: ground.measure(some) for kind, some in rates.items()}
+        found = {kind: truth.measure(batch) for kind, batch in rates.items()}
         metrics[name] = {
-            kind: {**one.place_figures, "directional": _share(one)} for kind, one in found.items()
+            kind: {**item.place_figures, "directional": _share(item)} for kind, item in found.items()
         }
-        metrics[name] |= trust(cmap)
+        metrics[name] |= trust_report(cmap)
         label = name.replace("_", " ")
-        cells |= {f"{label}, {kind.replace('_', ' ')}": one for kind, one in found.items()}
+        cells |= {f"{label}, {kind.replace('_', ' ')}": item for kind, item in found.items()}
         drawn[name] = {
-            f"{label}, {kind.replace('_', ' ')}": ground.tuning(some) for kind, some in rates.items()
+            f"{label}, {kind.replace('_', ' ')}": truth.tuning(batch) for kind, batch in rates.items()
         }
     table = as_one_table(cells)
     return Result(
@@ -67,12 +67,12 @@ def directionality(setting: Setting) -> Result:
         tables={"cells": table},
         figures={
             "cells": plot_cell_types(table),
-            **{f"examples_{name}": plot_examples(some) for name, some in drawn.items()},
+            **{f"examples_{name}": plot_examples(batch) for name, batch in drawn.items()},
         },
     )
 
 
-def _share(found: Measured) -> float:
+def _share(found: CellMetrics) -> float:
     """Share of directional cells among those with a field; 0 without any."""
     vectors = found.table["in_field_direction_vector"].dropna()
     return float((vectors > DIRECTIONAL).mean()) if len(vectors) else 0.0

@@ -5,14 +5,21 @@ from __future__ import annotations
 import numpy as np
 
 from arena import Brownian, Camera
-from cogmap.evaluation.populations import Ground, as_one_table, competing_cells, grow_map, perceive, trust
+from cogmap.evaluation.populations import (
+    GroundTruth,
+    as_one_table,
+    competing_cells,
+    grow_map,
+    perceive,
+    trust_report,
+)
 from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cell_types, plot_examples
 
 
-def fusion(setting: Setting) -> Result:
+def fusion(conditions: Conditions) -> Result:
     """Compare cells that see, cells that smell, and cells that see what smell has taught them.
 
     The same competitive layer learns from the Sanger codes of the views (`vision_only`) and from the log
@@ -24,25 +31,25 @@ def fusion(setting: Setting) -> Result:
     `metric_reason` say why the map is not to be trusted, or lays out no places.
     """
     camera = Camera.panoramic()
-    walk = setting.explore(Brownian(), camera)
-    fresh = setting.explore(Brownian(), camera, fresh=True)
-    cmap = grow_map(walk, setting.map, seed=setting.seed)
-    ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
-    known, asked = (perceive(cmap, one.views) for one in (walk, fresh))
-    codes = [cmap.encode(one.views) for one in (walk, fresh)]
-    smells = [np.log(one.odours) for one in (walk, fresh)]
+    walk = conditions.explore(Brownian(), camera)
+    fresh = conditions.explore(Brownian(), camera, fresh=True)
+    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
+    truth = GroundTruth.of(conditions.room, poses_of(walk), poses_of(fresh))
+    train, test = (perceive(cmap, item.views) for item in (walk, fresh))
+    codes = [cmap.encode(item.views) for item in (walk, fresh)]
+    smells = [np.log(item.odours) for item in (walk, fresh)]
     rates = {
-        "vision only": competing_cells(*codes, seed=setting.seed)[0],
-        "olfaction only": competing_cells(*smells, seed=setting.seed)[0],
-        "fused, place": asked.place,
-        "fused, heading": asked.heading,
+        "vision only": competing_cells(*codes, seed=conditions.seed)[0],
+        "olfaction only": competing_cells(*smells, seed=conditions.seed)[0],
+        "fused, place": test.place,
+        "fused, heading": test.heading,
     }
-    cells = {name: ground.measure(found) for name, found in rates.items()}
+    cells = {name: truth.measure(found) for name, found in rates.items()}
     alone = {
         name: {**cells[name].place_figures, **cells[name].heading_figures}
         for name in ("vision only", "olfaction only")
     }
-    nose = ground.position(*smells)
+    nose = truth.position(*smells)
     table = as_one_table(cells)
     return Result(
         metrics={
@@ -51,9 +58,9 @@ def fusion(setting: Setting) -> Result:
             "fused": {
                 **cells["fused, place"].place_figures,
                 **cells["fused, heading"].heading_figures,
-                **score(asked, ground.poses, train=(known, ground.known), reachable=ground.reachable),
+                **score(test, truth.poses, train=(train, truth.train), reachable=truth.reachable),
                 **{f"nose_{key}": value for key, value in nose.items()},
-                **trust(cmap),
+                **trust_report(cmap),
                 "metric_reason": cmap.metric_reason_,
                 "seconds": {stage: round(spent, 3) for stage, spent in cmap.seconds_.items()},
             },
@@ -61,6 +68,6 @@ def fusion(setting: Setting) -> Result:
         tables={"cells": table},
         figures={
             "cells": plot_cell_types(table),
-            "examples": plot_examples({name: ground.tuning(found) for name, found in rates.items()}),
+            "examples": plot_examples({name: truth.tuning(found) for name, found in rates.items()}),
         },
     )

@@ -14,7 +14,7 @@ from jaxtyping import Float
 from arena import Arena, Brownian, Camera, Disc
 from cogmap.evaluation.homology_of_map import homologies
 from cogmap.evaluation.populations import grow_map, perceive
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_barcode_grid, plot_barcodes
 from cogmap.shape import Betti, Nerve, population_nerve
@@ -53,12 +53,12 @@ class Case(NamedTuple):
     @property
     def margin(self) -> float | None:
         """Least factor by which a bar that is asked for would have to change to be judged otherwise."""
-        asked = self.found.margins[1 : len(self.expected)] if self.found else ()
-        factors = [last for last, _ in asked if last] + [1 / first for _, first in asked if first]
+        margins = self.found.margins[1 : len(self.expected)] if self.found else ()
+        factors = [last for last, _ in margins if last] + [1 / first for _, first in margins if first]
         return min(factors, default=None)
 
 
-def homology(setting: Setting) -> Result:
+def homology(conditions: Conditions) -> Result:
     """Count pieces, loops and voids of the view manifold, the fused map and both populations in every room.
 
     A room with h pillars on its platform leaves the body a plane with h holes, of Betti numbers [1, h], times
@@ -70,7 +70,9 @@ def homology(setting: Setting) -> Result:
     `nerve_right` of `nerve_cases`.
     """
     cases = [
-        case for room in (setting.room, *setting.further) for case in _visit(replace(setting, room=room))
+        case
+        for room in (conditions.room, *conditions.extra_rooms)
+        for case in _visit(replace(conditions, room=room))
     ]
     populations = [case for case in cases if case.cloud in POPULATIONS]
     misses = [case for case in cases if not case.right]
@@ -110,25 +112,25 @@ def expected_numbers(room: Arena, start: Float[np.ndarray, "2"]) -> dict[str, Nu
     }
 
 
-def _visit(setting: Setting) -> list[Case]:
+def _visit(conditions: Conditions) -> list[Case]:
     """Learn a map of one room and look at all that it knows."""
-    walk = setting.explore(Brownian(), Camera.panoramic())
-    cmap = grow_map(walk, setting.map, seed=setting.seed)
+    walk = conditions.explore(Brownian(), Camera.panoramic())
+    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
     activity = perceive(cmap, walk.views)
-    found = homologies(cmap.encode(walk.views), activity, seed=setting.seed)
+    found = homologies(cmap.encode(walk.views), activity, seed=conditions.seed)
     nerves = {name: population_nerve(getattr(activity, name)) for name in POPULATIONS if name in found}
-    expected = expected_numbers(setting.room, poses_of(walk)[0, :2])
+    expected = expected_numbers(conditions.room, poses_of(walk)[0, :2])
     return [
-        Case(setting.room.name, name, numbers, found.get(name), nerves.get(name), cmap.reason_)
+        Case(conditions.room.name, name, numbers, found.get(name), nerves.get(name), cmap.reason_)
         for name, numbers in expected.items()
     ]
 
 
-def _by_room(cases: list[Case], told: Callable[[Case], T]) -> dict[str, dict[str, T]]:
+def _by_room(cases: list[Case], figure_of: Callable[[Case], T]) -> dict[str, dict[str, T]]:
     """Give what is told of every case, by room and cloud."""
     rooms: dict[str, dict[str, T]] = {}
     for case in cases:
-        rooms.setdefault(case.room, {})[case.cloud] = told(case)
+        rooms.setdefault(case.room, {})[case.cloud] = figure_of(case)
     return rooms
 
 

@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from arena import Arena, Brownian, Camera, Nose, Recording
-from cogmap.evaluation.populations import Ground, grow_map, perceive, trust
+from cogmap.evaluation.populations import GroundTruth, grow_map, perceive, trust_report
 from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import FRESH_SEED, Setting, poses_of
+from cogmap.experiments.conditions import FRESH_SEED, Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cases
 
@@ -22,7 +22,7 @@ USUAL_SOURCES, USUAL_NOISE = 3, 0.1
 LABELS = {"sources": "odour sources", "noise": "noise of the nose"}
 
 
-def sources(setting: Setting) -> Result:
+def odour_ablation(conditions: Conditions) -> Result:
     """Learn the same views with one to four odour sources, and with a nose of no noise to one of 30 %.
 
     With few sources a smell can mean several places. `position_median_m` is read from the recalled odour,
@@ -31,13 +31,13 @@ def sources(setting: Setting) -> Result:
     cells with exactly one field.
     """
     camera = Camera.panoramic()
-    walk = setting.explore(Brownian(), camera)
-    fresh = setting.explore(Brownian(), camera, fresh=True)
-    ground = Ground.of(setting.room, poses_of(walk), poses_of(fresh))
+    walk = conditions.explore(Brownian(), camera)
+    fresh = conditions.explore(Brownian(), camera, fresh=True)
+    truth = GroundTruth.of(conditions.room, poses_of(walk), poses_of(fresh))
     cases = [(count, USUAL_NOISE) for count in range(1, len(PLACES) + 1)]
     cases += [(USUAL_SOURCES, noise) for noise in NOISE if noise != USUAL_NOISE]
     metrics = {
-        f"{count}_sources_{noise:g}_noise": _learn(setting, ground, walk, fresh, count=count, noise=noise)
+        f"{count}_sources_{noise:g}_noise": _learn(conditions, truth, walk, fresh, count=count, noise=noise)
         for count, noise in cases
     }
     table = pd.DataFrame(
@@ -57,19 +57,19 @@ def smell(room: Arena, walk: Recording, *, count: int, noise: float, seed: int) 
 
 
 def _learn(
-    setting: Setting, ground: Ground, walk: Recording, fresh: Recording, *, count: int, noise: float
+    conditions: Conditions, truth: GroundTruth, walk: Recording, fresh: Recording, *, count: int, noise: float
 ) -> dict[str, Any]:
     smells = [
-        smell(setting.room, one, count=count, noise=noise, seed=setting.seed + late)
-        for one, late in ((walk, 0), (fresh, FRESH_SEED))
+        smell(conditions.room, item, count=count, noise=noise, seed=conditions.seed + late)
+        for item, late in ((walk, 0), (fresh, FRESH_SEED))
     ]
-    cmap = grow_map(replace(walk, odours=smells[0]), setting.map, seed=setting.seed)
-    known, asked = (perceive(cmap, one.views) for one in (walk, fresh))
-    place = ground.measure(asked.place)
+    cmap = grow_map(replace(walk, odours=smells[0]), conditions.map, seed=conditions.seed)
+    train, test = (perceive(cmap, item.views) for item in (walk, fresh))
+    place = truth.measure(test.place)
     return {
-        **score(asked, ground.poses, train=(known, ground.known), reachable=ground.reachable),
-        **{f"nose_{key}": value for key, value in ground.position(*map(np.log, smells)).items()},
-        **{f"place_{key}": value for key, value in ground.position(known.place, asked.place).items()},
+        **score(test, truth.poses, train=(train, truth.train), reachable=truth.reachable),
+        **{f"nose_{key}": value for key, value in truth.position(*map(np.log, smells)).items()},
+        **{f"place_{key}": value for key, value in truth.position(train.place, test.place).items()},
         "single_field": float((place.table["fields"] == 1).mean()),
-        **trust(cmap),
+        **trust_report(cmap),
     }

@@ -9,14 +9,21 @@ import numpy as np
 from arena import Brownian, Camera, Motion, Track
 from arena.motions.slow_turning import SlowTurning
 from cogmap.evaluation.peers.slow_features import slow_cells
-from cogmap.evaluation.populations import Ground, Measured, as_one_table, grow_map, perceive, trust
+from cogmap.evaluation.populations import (
+    CellMetrics,
+    GroundTruth,
+    as_one_table,
+    grow_map,
+    perceive,
+    trust_report,
+)
 from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cell_types
 
 
-class Way(NamedTuple):
+class WalkPair(NamedTuple):
     """How the animal walks while it learns, and while it is scored."""
 
     learnt: Motion
@@ -26,14 +33,14 @@ class Way(NamedTuple):
 
 
 WALKS = {
-    "brownian": Way(Brownian(), Brownian()),
-    "slow_turning": Way(SlowTurning(), Brownian()),
-    "corridor": Way(Track(), Track()),
-    "shuffled": Way(Brownian(), Brownian(), shuffled=True),
+    "brownian": WalkPair(Brownian(), Brownian()),
+    "slow_turning": WalkPair(SlowTurning(), Brownian()),
+    "corridor": WalkPair(Track(), Track()),
+    "shuffled": WalkPair(Brownian(), Brownian(), shuffled=True),
 }
 
 
-def walks(setting: Setting) -> Result:
+def slow_feature_comparison(conditions: Conditions) -> Result:
     """Learn the same room on four walks, by slowness and by smell.
 
     Slow feature analysis takes the Sanger codes of the views in their order; the fusion takes views and
@@ -42,10 +49,10 @@ def walks(setting: Setting) -> Result:
     features is read from them by the same decoder. The same cells of slow features are judged as place cells
     and as head-direction cells.
     """
-    cells: dict[str, Measured] = {}
+    cells: dict[str, CellMetrics] = {}
     metrics: dict[str, Any] = {}
-    for name, way in WALKS.items():
-        metrics[name], found = _learn(setting, way)
+    for name, pair in WALKS.items():
+        metrics[name], found = _learn(conditions, pair)
         cells |= {f"{name.replace('_', ' ')}, {kind}": measured for kind, measured in found.items()}
     table = as_one_table(cells)
     return Result(
@@ -58,34 +65,34 @@ def walks(setting: Setting) -> Result:
     )
 
 
-def _learn(setting: Setting, way: Way) -> tuple[dict[str, Any], dict[str, Measured]]:
+def _learn(conditions: Conditions, pair: WalkPair) -> tuple[dict[str, Any], dict[str, CellMetrics]]:
     camera = Camera.panoramic()
-    walk = setting.explore(way.learnt, camera)
-    fresh = setting.explore(way.scored, camera, fresh=True)
-    if way.shuffled:
-        walk = walk[np.random.default_rng(setting.seed).permutation(len(walk))]
-    known, poses = poses_of(walk), poses_of(fresh)
-    ground = Ground(known, poses, known[:, :2])
-    cmap = grow_map(walk, setting.map, seed=setting.seed)
-    codes = [cmap.encode(one.views) for one in (walk, fresh)]
-    learnt, slow = slow_cells(codes[0], *codes, seed=setting.seed)
-    before, after = (perceive(cmap, one.views) for one in (walk, fresh))
+    walk = conditions.explore(pair.learnt, camera)
+    fresh = conditions.explore(pair.scored, camera, fresh=True)
+    if pair.shuffled:
+        walk = walk[np.random.default_rng(conditions.seed).permutation(len(walk))]
+    train, poses = poses_of(walk), poses_of(fresh)
+    truth = GroundTruth(train, poses, train[:, :2])
+    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
+    codes = [cmap.encode(item.views) for item in (walk, fresh)]
+    learnt, slow = slow_cells(codes[0], *codes, seed=conditions.seed)
+    before, after = (perceive(cmap, item.views) for item in (walk, fresh))
     found = {
-        "slow features": ground.measure(slow.rates),
-        "fused place": ground.measure(after.place),
-        "fused heading": ground.measure(after.heading),
+        "slow features": truth.measure(slow.rates),
+        "fused place": truth.measure(after.place),
+        "fused heading": truth.measure(after.heading),
     }
     metrics = {
         "slow_features": {
             **found["slow features"].place_figures,
             **found["slow features"].heading_figures,
-            **ground.position(learnt.features, slow.features),
+            **truth.position(learnt.features, slow.features),
         },
         "fused": {
             **found["fused place"].place_figures,
             **found["fused heading"].heading_figures,
-            **score(after, poses, train=(before, known)),
-            **trust(cmap),
+            **score(after, poses, train=(before, train)),
+            **trust_report(cmap),
         },
     }
     return metrics, found

@@ -12,7 +12,7 @@ from sklearn.neighbors import KNeighborsRegressor
 from arena import Brownian, Camera
 from cogmap.cells import HeadingFrame, heading_errors
 from cogmap.evaluation.quasi_metric import quasi_metric
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.paper.view_manifold import view_manifold
 from cogmap.experiments.result import Result
 from cogmap.plots import (
@@ -32,24 +32,24 @@ NEIGHBOURS = 10
 """In the embedding, from whose poses that of a view is read."""
 
 
-def brownian(setting: Setting) -> Result:
+def brownian(conditions: Conditions) -> Result:
     """Figs. 3 and 6: find the solid torus, and read poses off four coordinates of it.
 
     One view in ten is held out of the embedding and placed in it afterwards; `position_r2` is the share of
     the variance of x and y of these views that the poses of their ten nearest others in the embedding tell.
     """
-    walk = setting.explore(Brownian(), Camera.perspective())
+    walk = conditions.explore(Brownian(), Camera.perspective())
     poses = poses_of(walk)
-    found = view_manifold(walk.views, setting)
-    order = np.random.default_rng(setting.seed).permutation(len(poses))
-    held, known = np.split(order, [round(HELD_OUT * len(poses))])
-    isomap = LandmarkIsomap(COMPONENTS, metric="cosine", averaging=True, seed=setting.seed)
+    found = view_manifold(walk.views, conditions)
+    order = np.random.default_rng(conditions.seed).permutation(len(poses))
+    held, train = np.split(order, [round(HELD_OUT * len(poses))])
+    isomap = LandmarkIsomap(COMPONENTS, metric="cosine", averaging=True, seed=conditions.seed)
     read = _read_poses(
-        isomap.fit_transform(found.words[known]), poses[known], isomap.transform(found.words[held])
+        isomap.fit_transform(found.words[train]), poses[train], isomap.transform(found.words[held])
     )
     truth = poses[held]
     turn = heading_errors(read.headings, truth[:, 2], HeadingFrame(0.0, mirror=False))
-    near = quasi_metric(found.graph, poses, setting.seed)
+    near = quasi_metric(found.graph, poses, conditions.seed)
     shape = found.metrics(poses)
     places = {"x (m)": poses[:, 0], "y (m)": poses[:, 1]}
     return Result(
@@ -64,7 +64,7 @@ def brownian(setting: Setting) -> Result:
         },
         tables={"views": found.table(poses), "distances": near.pairs, "places": near.places},
         figures={
-            "room": plot_room(setting.room, poses),
+            "room": plot_room(conditions.room, poses),
             "torus": plot_embedding(found.embedding, poses[:, 2], places),
             "torus_fourth": plot_embedding(found.embedding, poses[:, 2], places, coordinates=(0, 1, 3)),
             "heading": plot_compass(read.headings, truth[:, 2], truth[:, :2]),
@@ -81,12 +81,12 @@ class _Read(NamedTuple):
 
 
 def _read_poses(
-    known: Float[np.ndarray, "known components"],
-    poses: Float[np.ndarray, "known 3"],
+    train: Float[np.ndarray, "train components"],
+    poses: Float[np.ndarray, "train 3"],
     held: Float[np.ndarray, "views components"],
 ) -> _Read:
     """Mean pose of the nearest views in the embedding, weighted by 1 / distance."""
     target = np.column_stack([poses[:, :2], np.cos(poses[:, 2]), np.sin(poses[:, 2])])
-    reader = KNeighborsRegressor(NEIGHBOURS, weights="distance").fit(known, target)
+    reader = KNeighborsRegressor(NEIGHBOURS, weights="distance").fit(train, target)
     x, y, cosine, sine = reader.predict(held).T
     return _Read(np.column_stack([x, y]), np.arctan2(sine, cosine))

@@ -6,7 +6,7 @@ import numpy as np
 
 from arena import Camera, Cyclic
 from cogmap.evaluation.quasi_metric import quasi_metric
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.paper.view_manifold import view_manifold
 from cogmap.experiments.result import Result
 from cogmap.plots import (
@@ -23,19 +23,19 @@ COMPONENTS = 4
 """Coordinates of the embedding that the two ends of the cylinder are looked for in."""
 
 
-def cyclic(setting: Setting) -> Result:
+def cyclic(conditions: Conditions) -> Result:
     """Figs. 4 and 5: find the cylinder, the angle around it and the height along it.
 
     `translation_r2` is the squared correlation of the height with the distance along the way that the body
     went to and fro on, which is the first principal axis of its positions.
     """
-    walk = setting.explore(Cyclic(), Camera.perspective())
+    walk = conditions.explore(Cyclic(), Camera.perspective())
     poses = poses_of(walk)
-    found = view_manifold(walk.views, setting)
+    found = view_manifold(walk.views, conditions)
     height = height_coordinate(found.graph, found.embedding[:, :COMPONENTS], found.phase)
     along = _along_the_way(poses[:, :2])
     known = np.isfinite(height)
-    near = quasi_metric(found.graph, poses, setting.seed)
+    near = quasi_metric(found.graph, poses, conditions.seed)
     table = found.table(poses).assign(along_m=along, height=height)
     return Result(
         metrics={
@@ -45,7 +45,7 @@ def cyclic(setting: Setting) -> Result:
         },
         tables={"views": table, "distances": near.pairs, "places": near.places},
         figures={
-            "walk": plot_walk(setting.room, walk.times, poses),
+            "walk": plot_walk(conditions.room, walk.times, poses),
             "cylinder": plot_embedding(found.embedding, poses[:, 2], {"translation (m)": along}),
             "heading": plot_compass(table["loop_rad"].to_numpy()[known], poses[known, 2], poses[known, :2]),
             "translation": plot_translation(height[known], along[known], poses[known, 2]),

@@ -13,7 +13,7 @@ from sklearn.decomposition import PCA
 
 from arena import Arena, Brownian, Camera
 from cogmap.evaluation.pose_agreement import motion_distances
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.graph import nearest_points
 from cogmap.plots import plot_barcodes, plot_confusion, plot_views
@@ -38,7 +38,7 @@ class _Seen(NamedTuple):
     """A view and that from the opposite pose."""
 
 
-def distinguishability(setting: Setting) -> Result:
+def distinguishability(conditions: Conditions) -> Result:
     """Count how often the view most like a query was taken from about the opposite pose.
 
     A white rectangle with nothing in it looks the same from (x, y, θ) and from (−x, −y, θ + π); with one wall
@@ -46,33 +46,33 @@ def distinguishability(setting: Setting) -> Result:
     own. Strips are compared as the retina leaves them, in their principal components; the Betti numbers are
     those of the same codes.
     """
-    seen = {name: _look(setting, Arena.load(room)) for name, room in ROOMS.items()}
+    seen = {name: _look(conditions, Arena.load(room)) for name, room in ROOMS.items()}
     return Result(
         metrics={
-            **{f"confusion_{name}": float(one.nearest["confused"].mean()) for name, one in seen.items()},
-            **{f"betti_{name}": list(one.shape.numbers) for name, one in seen.items()},
-            **{f"betti_votes_{name}": list(one.shape.votes) for name, one in seen.items()},
+            **{f"confusion_{name}": float(item.nearest["confused"].mean()) for name, item in seen.items()},
+            **{f"betti_{name}": list(item.shape.numbers) for name, item in seen.items()},
+            **{f"betti_votes_{name}": list(item.shape.votes) for name, item in seen.items()},
         },
-        tables={f"nearest_{name}": one.nearest for name, one in seen.items()},
+        tables={f"nearest_{name}": item.nearest for name, item in seen.items()},
         figures={
-            "confusion": plot_confusion({name: one.nearest for name, one in seen.items()}),
+            "confusion": plot_confusion({name: item.nearest for name, item in seen.items()}),
             "views": plot_views(
-                np.concatenate([one.pair for one in seen.values()]),
-                np.concatenate([one.poses for one in seen.values()]),
+                np.concatenate([item.pair for item in seen.values()]),
+                np.concatenate([item.poses for item in seen.values()]),
                 2,
             ),
-            "barcodes": plot_barcodes({f"{name} room": one.shape for name, one in seen.items()}),
+            "barcodes": plot_barcodes({f"{name} room": item.shape for name, item in seen.items()}),
         },
     )
 
 
-def _look(setting: Setting, room: Arena) -> _Seen:
+def _look(conditions: Conditions, room: Arena) -> _Seen:
     strips = Camera.panoramic()
-    here = replace(setting, room=room)
+    here = replace(conditions, room=room)
     walk = here.explore(Brownian(), strips)
-    fresh = here.explore(Brownian(), strips, views=min(QUERIES, setting.views), fresh=True)
-    known, asked = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), setting.seed)
-    nearest = poses_of(walk)[nearest_points(known, 1, queries=asked).indices[:, 0]]
+    fresh = here.explore(Brownian(), strips, views=min(QUERIES, conditions.views), fresh=True)
+    train, test = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), conditions.seed)
+    nearest = poses_of(walk)[nearest_points(train, 1, queries=test).indices[:, 0]]
     poses = poses_of(fresh)
     opposite = _opposite(room, poses)
     columns = ["x_m", "y_m", "heading_rad"]
@@ -82,7 +82,7 @@ def _look(setting: Setting, room: Arena) -> _Seen:
     first = np.stack([poses[0], opposite[0]])
     return _Seen(
         nearest=table.assign(confused=_apart(nearest, opposite) < _apart(nearest, poses)),
-        shape=betti(known, seed=setting.seed),
+        shape=betti(train, seed=conditions.seed),
         pair=strips.render(room, first),
         poses=first,
     )
@@ -101,10 +101,10 @@ def _apart(ours: Float[np.ndarray, "views 3"], theirs: Float[np.ndarray, "views 
 
 
 def retina_codes(
-    known: np.ndarray, asked: np.ndarray, seed: int
+    train: np.ndarray, test: np.ndarray, seed: int
 ) -> tuple[Float[np.ndarray, "views components"], Float[np.ndarray, "queries components"]]:
     """Give the principal components, of the known views, of what the retina makes of strips."""
-    retina = Retina(*known.shape[1:3])
+    retina = Retina(*train.shape[1:3])
     with one_thread():
         sensed = [
             np.concatenate(
@@ -113,7 +113,7 @@ def retina_codes(
                     for first in range(0, len(views), BLOCK)
                 ]
             )
-            for views in (known, asked)
+            for views in (train, test)
         ]
-        pca = PCA(min(COMPONENTS, len(known)), random_state=seed)
+        pca = PCA(min(COMPONENTS, len(train)), random_state=seed)
         return pca.fit_transform(sensed[0]), pca.transform(sensed[1])

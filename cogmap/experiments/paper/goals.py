@@ -11,8 +11,8 @@ from jaxtyping import Float
 
 from arena import Arena, Brownian, Camera, Chemotaxis, Disc, Recording
 from cogmap.cells import fit_heading_frame, heading_errors
-from cogmap.evaluation.populations import Ground, as_one_table
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.evaluation.populations import GroundTruth, as_one_table
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.paper.distinguishability import retina_codes
 from cogmap.experiments.result import Result
 from cogmap.graph import nearest_points, neighbour_graph
@@ -36,7 +36,7 @@ PEAK = 20.0
 """Rate on the ring itself, Hz."""
 
 
-def goals(setting: Setting) -> Result:
+def goals(conditions: Conditions) -> Result:
     """Fig. 8: climb an odour to its maximum, look around there, be pushed away, come back; move the goal.
 
     The views gathered at a maximum are a ring in the manifold. The ring is a place cell: it fires with how
@@ -50,28 +50,28 @@ def goals(setting: Setting) -> Result:
     3.1°; with 6,000, some 110, nearest neighbours on the next ring look elsewhere too often, and it was 40°.
     """
     camera = Camera.panoramic()
-    visits = [_visit(setting, goal, camera) for goal in goal_grid(setting.room)]
-    fresh = setting.explore(Brownian(), camera, fresh=True)
+    visits = [_visit(conditions, goal, camera) for goal in goal_grid(conditions.room)]
+    fresh = conditions.explore(Brownian(), camera, fresh=True)
     seen = np.concatenate([np.asarray(visit.views) for visit in visits])
     poses = np.concatenate([poses_of(visit) for visit in visits])
     ring = np.repeat(np.arange(len(visits)), [len(visit) for visit in visits])
-    codes, asked = retina_codes(seen, np.asarray(fresh.views), setting.seed)
-    place = ring_distances(asked, codes, ring)
+    codes, test = retina_codes(seen, np.asarray(fresh.views), conditions.seed)
+    place = ring_distances(test, codes, ring)
     between = ring_distances(codes, codes, ring)
     between[np.arange(len(ring)), ring] = np.inf
     width = np.median(between.min(axis=1)) / 2
-    centres = np.array([poses[ring == one, :2].mean(axis=0) for one in range(len(visits))])
+    centres = np.array([poses[ring == item, :2].mean(axis=0) for item in range(len(visits))])
     order = np.argsort(np.linalg.norm(centres - centres.mean(axis=0), axis=1), kind="stable")
     orientation = spread_orientation(codes, ring, order)
-    nearest = nearest_points(codes, 1, queries=asked).indices[:, 0]
+    nearest = nearest_points(codes, 1, queries=test).indices[:, 0]
     turn = _aligned(orientation, poses[:, 2])
     read = _aligned(orientation[nearest], poses_of(fresh)[:, 2])
-    ground = Ground.of(setting.room, poses, poses_of(fresh))
+    truth = GroundTruth.of(conditions.room, poses, poses_of(fresh))
     rates = {
         "rings, place": PEAK * np.exp(-0.5 * (place / width) ** 2),
         "rings, heading": orientation_rates(orientation[nearest]),
     }
-    cells = {name: ground.measure(found) for name, found in rates.items()}
+    cells = {name: truth.measure(found) for name, found in rates.items()}
     table = as_one_table(cells)
     views = pd.DataFrame(poses, columns=["x_m", "y_m", "heading_rad"]).assign(
         ring=ring, orientation_rad=poses[:, 2] + turn
@@ -81,7 +81,7 @@ def goals(setting: Setting) -> Result:
         "precomputed",
         max_dimension=1,
         landmarks=LANDMARKS,
-        seed=setting.seed,
+        seed=conditions.seed,
     )
     return Result(
         metrics={
@@ -98,9 +98,9 @@ def goals(setting: Setting) -> Result:
         },
         tables={"views": views, "cells": table},
         figures={
-            "goals": plot_goals(setting.room, views),
+            "goals": plot_goals(conditions.room, views),
             "cells": plot_cell_types(table),
-            "examples": plot_examples({name: ground.tuning(found) for name, found in rates.items()}),
+            "examples": plot_examples({name: truth.tuning(found) for name, found in rates.items()}),
         },
     )
 
@@ -115,12 +115,12 @@ def goal_grid(room: Arena) -> Float[np.ndarray, "goals 2"]:
 
 
 def ring_distances(
-    asked: Float[np.ndarray, "views components"],
+    test: Float[np.ndarray, "views components"],
     codes: Float[np.ndarray, "seen components"],
     ring: np.ndarray,
 ) -> Float[np.ndarray, "views rings"]:
     """Distance of each view to the nearest view of each ring."""
-    found = [nearest_points(codes[ring == one], 1, queries=asked).distances[:, 0] for one in np.unique(ring)]
+    found = [nearest_points(codes[ring == item], 1, queries=test).distances[:, 0] for item in np.unique(ring)]
     return np.stack(found, axis=1)
 
 
@@ -141,8 +141,8 @@ def spread_orientation(
     first = ring == order[0]
     orientation[first] = circular_coordinate(ring_graph(codes[first])).phase
     known = first & np.isfinite(orientation)
-    for one in order[1:]:
-        mine = ring == one
+    for item in order[1:]:
+        mine = ring == item
         near = nearest_points(codes[known], 1, queries=codes[mine])
         chosen = ring[known][near.indices[:, 0]]
         usual = np.bincount(chosen).argmax()
@@ -159,12 +159,12 @@ def orientation_rates(orientation: Float[np.ndarray, "views"]) -> Float[np.ndarr
     return PEAK * np.exp(CONCENTRATION * (np.cos(orientation[:, None] - preferred) - 1))
 
 
-def _visit(setting: Setting, goal: Float[np.ndarray, "2"], camera: Camera) -> Recording:
+def _visit(conditions: Conditions, goal: Float[np.ndarray, "2"], camera: Camera) -> Recording:
     """Climb the only odour of the room, from a goal, and keep the views at its maximum."""
     x, y = goal.tolist()
-    scented = setting.room.model_copy(update={"sources": [{"position": (x, y)}]})
-    here = replace(setting, room=scented)
-    count = max(FEWEST, setting.views // (ACROSS * ALONG))
+    scented = conditions.room.model_copy(update={"sources": [{"position": (x, y)}]})
+    here = replace(conditions, room=scented)
+    count = max(FEWEST, conditions.views // (ACROSS * ALONG))
     walk = here.explore(Chemotaxis(), camera, views=count)
     stays = walk.attributes["walk"]["at_maximum"]
     rows = np.concatenate([np.arange(first, last) for first, last in stays])

@@ -9,7 +9,7 @@ import pandas as pd
 from jaxtyping import Float
 
 from arena import Brownian, Camera
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.features import BagOfWords
 from cogmap.navigation import Localiser, Location, image_codes
@@ -21,22 +21,22 @@ QUERIES, NEIGHBOURS = 5, 5
 """Of Table 3."""
 
 
-def localisation(setting: Setting) -> Result:
+def localisation(conditions: Conditions) -> Result:
     """Table 3: place the views of a fresh walk, taken with a noisy camera, among remembered ones.
 
     Neighbours are found by bags of words, weights in blurred images; poses of the remembered views enter when
     all is done, as what the weights interpolate. `nearest_*` are the errors of the nearest view by words. A
     view that shows no known word has no place, and `placed` is the share of those that have.
     """
-    walk = setting.explore(Brownian(), Camera.perspective())
-    fresh = setting.explore(Brownian(), Camera.perspective(noise=NOISE), fresh=True)
-    words = BagOfWords(seed=setting.seed, progress=setting.progress)
+    walk = conditions.explore(Brownian(), Camera.perspective())
+    fresh = conditions.explore(Brownian(), Camera.perspective(noise=NOISE), fresh=True)
+    words = BagOfWords(seed=conditions.seed, progress=conditions.progress)
     localiser = Localiser(words.fit_transform(walk.views), codes=image_codes(walk.views))
     found = localiser.locate(words.transform(fresh.views), codes=image_codes(fresh.views))
-    known, truth = poses_of(walk), poses_of(fresh)
-    read = interpolated_poses(found, known)
+    train, truth = poses_of(walk), poses_of(fresh)
+    read = interpolated_poses(found, train)
     placed = found.indices[:, 0] >= 0
-    nearest = np.where(placed[:, None], known[found.indices[:, 0]], np.nan)
+    nearest = np.where(placed[:, None], train[found.indices[:, 0]], np.nan)
     table = pd.DataFrame(
         {
             **_columns("", truth),
@@ -50,13 +50,13 @@ def localisation(setting: Setting) -> Result:
     neighbours = np.maximum(found.indices[shown, :NEIGHBOURS], 0)
     return Result(
         metrics={"noise": NOISE, "placed": float(placed.mean()), **_summary(table)},
-        tables={"views": table, "neighbours": _table_3(shown, neighbours, truth, known)},
+        tables={"views": table, "neighbours": _table_3(shown, neighbours, truth, train)},
         figures={
             "neighbours": plot_neighbours(
                 np.asarray(fresh[shown].views),
                 truth[shown],
                 np.stack([[walk.views[view] for view in row] for row in neighbours]),
-                known[neighbours],
+                train[neighbours],
             ),
             "errors": plot_localisation(table),
         },
@@ -98,7 +98,7 @@ def _summary(table: pd.DataFrame) -> dict[str, Any]:
 
 
 def _table_3(
-    queries: np.ndarray, neighbours: np.ndarray, truth: np.ndarray, known: np.ndarray
+    queries: np.ndarray, neighbours: np.ndarray, truth: np.ndarray, train: np.ndarray
 ) -> pd.DataFrame:
     rank = np.tile(np.arange(1, neighbours.shape[1] + 1), len(queries))
     query, view = np.repeat(queries, neighbours.shape[1]), neighbours.ravel()
@@ -108,7 +108,7 @@ def _table_3(
             "rank": rank,
             "view": view,
             **_columns("query_", truth[query]),
-            **_columns("", known[view]),
-            **_errors("", known[view], truth[query]),
+            **_columns("", train[view]),
+            **_errors("", train[view], truth[query]),
         }
     )

@@ -16,7 +16,7 @@ from cogmap.errors import CogmapError
 from cogmap.evaluation.deviation import path_deviation, path_length
 from cogmap.evaluation.peers.prm import prm_paths
 from cogmap.evaluation.shortest import shortest_lengths
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.navigation import PanoramaCode, VisualRoadmap
 from cogmap.plots import plot_routes, plot_views
@@ -43,7 +43,7 @@ class _Plan(NamedTuple):
     milliseconds: float
 
 
-def roadmap(setting: Setting) -> Result:
+def roadmap(conditions: Conditions) -> Result:
     """Algorithm 1 and Fig. 7: plan between 200 pairs of poses over views, and beside it with OMPL's PRM.
 
     The robot explores with a panoramic camera and a bumper 3 cm wider than its body, plans from the
@@ -52,10 +52,10 @@ def roadmap(setting: Setting) -> Result:
     body's disc on it reaches more than 1 mm into a solid. The PRM has as many milestones as there are views,
     and the arena's own collision check; `prm_*` are left out when `ompl` is not installed, as `prm` tells.
     """
-    room, body, around = setting.room, Disc(), Camera.panoramic(120, 20)
-    walk = setting.explore(Brownian(), around, body=Disc(radius=body.radius + MARGIN))
+    room, body, around = conditions.room, Disc(), Camera.panoramic(120, 20)
+    walk = conditions.explore(Brownian(), around, body=Disc(radius=body.radius + MARGIN))
     poses = poses_of(walk)
-    pairs = draw_pairs(room, body.radius, setting.seed)
+    pairs = draw_pairs(room, body.radius, conditions.seed)
     started = time.perf_counter()
     code = PanoramaCode()
     planner = VisualRoadmap(code.fit_transform(walk.views))
@@ -66,7 +66,7 @@ def roadmap(setting: Setting) -> Result:
     shortest = shortest_lengths(room, pairs[:, :, :2], body.radius)
     table = _pairs_table(pairs, shortest).join(_scores(room, [plan.path for plan in plans], shortest))
     table["query_ms"] = [plan.milliseconds for plan in plans]
-    peer = prm_paths(room, pairs, radius=body.radius, milestones=setting.views, seed=setting.seed)
+    peer = prm_paths(room, pairs, radius=body.radius, milestones=conditions.views, seed=conditions.seed)
     metrics = _summary(table)
     if peer is not None:
         theirs = _scores(room, peer, shortest).add_prefix("prm_")

@@ -16,7 +16,7 @@ from sklearn.preprocessing import StandardScaler
 from arena import Camera, Rotation
 from cogmap.cells import HeadingFrame, heading_errors
 from cogmap.evaluation.quasi_metric import quasi_metric
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.paper.view_manifold import view_manifold
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_barcodes, plot_compass, plot_embedding, plot_quasi_metric, plot_views
@@ -29,14 +29,14 @@ DECAYS = (1e-6, 1e-4, 1e-2)
 """Weight decays, of which the validation views choose one."""
 
 
-def rotation(setting: Setting) -> Result:
+def rotation(conditions: Conditions) -> Result:
     """Fig. 1 and Table 2: spin, find the ring, and predict the heading from coordinates on the manifold."""
-    walk = setting.explore(Rotation(), Camera.perspective())
+    walk = conditions.explore(Rotation(), Camera.perspective())
     poses = poses_of(walk)
-    found = view_manifold(walk.views, setting)
-    fit = predict_headings(found.embedding, poses[:, 2], setting.seed)
+    found = view_manifold(walk.views, conditions)
+    fit = predict_headings(found.embedding, poses[:, 2], conditions.seed)
     test = fit.table[fit.table["split"] == "test"]
-    near = quasi_metric(found.graph, poses, setting.seed)
+    near = quasi_metric(found.graph, poses, conditions.seed)
     shown = np.linspace(0, len(walk) - 1, 12).astype(int)
     return Result(
         metrics={

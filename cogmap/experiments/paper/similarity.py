@@ -10,7 +10,7 @@ from jaxtyping import Float, Int
 
 from arena import Brownian, Camera
 from cogmap.evaluation.pose_agreement import motion_distances, pose_agreement
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.result import Result
 from cogmap.features import BagOfWords, cosine_distances, earth_mover_distances, pixel_distances
 from cogmap.plots import plot_likeness
@@ -22,34 +22,34 @@ SHOWN = 4
 """Queries that are drawn with the views that each measure finds most like them."""
 
 
-def similarity(setting: Setting) -> Result:
+def similarity(conditions: Conditions) -> Result:
     """Compare pixels, bags of words and moved light by the poses of the views that they call alike.
 
     Pixels and words are those of the perspective camera; light is moved around panoramic strips taken from
     the same poses. Each measure looks for the ten views most like each of 500 views of a fresh walk.
     """
     ahead, around = Camera.perspective(), Camera.panoramic()
-    count = min(QUERIES, setting.views)
-    walk = setting.explore(Brownian(), ahead)
-    fresh = setting.explore(Brownian(), ahead, views=count, fresh=True)
-    poses, asked = poses_of(walk), poses_of(fresh)
-    words = BagOfWords(seed=setting.seed, progress=setting.progress)
-    known = words.fit_transform(walk.views)
+    count = min(QUERIES, conditions.views)
+    walk = conditions.explore(Brownian(), ahead)
+    fresh = conditions.explore(Brownian(), ahead, views=count, fresh=True)
+    poses, test = poses_of(walk), poses_of(fresh)
+    words = BagOfWords(seed=conditions.seed, progress=conditions.progress)
+    train = words.fit_transform(walk.views)
     distances = {
         "euclidean": pixel_distances(fresh.views, walk.views),
-        "bag_of_words": cosine_distances(words.transform(fresh.views), known),
+        "bag_of_words": cosine_distances(words.transform(fresh.views), train),
         "earth_mover": earth_mover_distances(
-            setting.explore(Brownian(), around, views=count, fresh=True).views,
-            setting.explore(Brownian(), around).views,
+            conditions.explore(Brownian(), around, views=count, fresh=True).views,
+            conditions.explore(Brownian(), around).views,
         ),
     }
     metrics: dict[str, Any] = {
-        name: pose_agreement(found, asked, poses, neighbours=NEIGHBOURS)._asdict()
+        name: pose_agreement(found, test, poses, neighbours=NEIGHBOURS)._asdict()
         for name, found in distances.items()
     }
     best = {name: found.argmin(axis=1) for name, found in distances.items()}
-    best["pose"] = motion_distances(asked, poses).argmin(axis=1)
-    table = _nearest_table(best, asked, poses)
+    best["pose"] = motion_distances(test, poses).argmin(axis=1)
+    table = _nearest_table(best, test, poses)
     shown = np.linspace(0, count - 1, min(SHOWN, count)).astype(int)
     pictures = {"query": np.asarray(fresh[shown].views)} | {
         name: np.asarray(walk[found[shown]].views) for name, found in best.items()
@@ -61,7 +61,7 @@ def similarity(setting: Setting) -> Result:
 
 def _nearest_table(
     best: dict[str, Int[np.ndarray, "queries"]],
-    asked: Float[np.ndarray, "queries 3"],
+    test: Float[np.ndarray, "queries 3"],
     poses: Float[np.ndarray, "views 3"],
 ) -> pd.DataFrame:
     """Tell how far in pose the view is that each measure finds most like each query."""
@@ -70,11 +70,11 @@ def _nearest_table(
             pd.DataFrame(
                 {
                     "measure": name,
-                    "query": np.arange(len(asked)),
+                    "query": np.arange(len(test)),
                     "view": found,
-                    "position_error_m": np.linalg.norm(poses[found, :2] - asked[:, :2], axis=1),
+                    "position_error_m": np.linalg.norm(poses[found, :2] - test[:, :2], axis=1),
                     "heading_error_deg": np.rad2deg(
-                        np.abs(np.angle(np.exp(1j * (poses[found, 2] - asked[:, 2]))))
+                        np.abs(np.angle(np.exp(1j * (poses[found, 2] - test[:, 2]))))
                     ),
                 }
             )

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from jaxtyping import Float
 
 from cogmap.cells import fit_heading_frame, heading_errors
-from cogmap.experiments.conditions import Setting
+from cogmap.experiments.conditions import Conditions
 from cogmap.features import BagOfWords
 from cogmap.graph.neighbour_graph import neighbourhood_means
 from cogmap.shape import Betti, LandmarkIsomap, betti, circular_coordinate, intrinsic_dimension
@@ -74,15 +74,15 @@ class ViewManifold(NamedTuple):
         return turn
 
 
-def view_manifold(views: Any, setting: Setting) -> ViewManifold:
+def view_manifold(views: Any, conditions: Conditions) -> ViewManifold:
     """Find the shape of a set of images; no truth is needed and none is given."""
-    words = BagOfWords(seed=setting.seed, progress=setting.progress).fit_transform(views)
-    isomap = LandmarkIsomap(COORDINATES, metric="cosine", seed=setting.seed).fit(words)
+    words = BagOfWords(seed=conditions.seed, progress=conditions.progress).fit_transform(views)
+    isomap = LandmarkIsomap(COORDINATES, metric="cosine", seed=conditions.seed).fit(words)
     return ViewManifold(
         words=words,
         graph=isomap.graph_,
         embedding=neighbourhood_means(isomap.graph_) @ isomap.embedding_,
-        phase=circular_coordinate(isomap.graph_, seed=setting.seed).phase,
-        shape=betti(isomap.graph_, "precomputed", seed=setting.seed),
+        phase=circular_coordinate(isomap.graph_, seed=conditions.seed).phase,
+        shape=betti(isomap.graph_, "precomputed", seed=conditions.seed),
         dimension=intrinsic_dimension(isomap.embedding_),
     )

@@ -15,7 +15,7 @@ from pyarrow import ArrowException
 
 from cogmap.atomic import METRICS
 from cogmap.errors import CogmapError
-from cogmap.experiments.provenance import ABOUT
+from cogmap.experiments.provenance import PROVENANCE
 from cogmap.pages.report.captions import caption
 from cogmap.tables import as_rows, shown
 
@@ -84,7 +84,7 @@ def read_contents(folder: Path) -> Contents:
             f"{SWEPT[1]}; give a folder that one of them wrote"
         )
     metrics, about = (
-        _read(folder / name, _record) if (folder / name).is_file() else {} for name in (METRICS, ABOUT)
+        _read(folder / name, _record) if (folder / name).is_file() else {} for name in (METRICS, PROVENANCE)
     )
     given = {name: metrics[name] for name in PARAMETERS if name in metrics}
     found = {name: value for name, value in metrics.items() if name not in given}

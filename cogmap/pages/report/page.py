@@ -6,7 +6,7 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from cogmap.atomic import whole
+from cogmap.atomic import atomic_write
 from cogmap.errors import CogmapError
 from cogmap.pages.report.contents import read_contents
 
@@ -39,7 +39,7 @@ def report(folder: Path, out: Path | None = None) -> Path:
     """
     out = folder / "report.html" if out is None else out
     page = _PAGES.get_template("report.html").render(found=read_contents(folder), mark=_MARK)
-    with whole(out) as fresh:
+    with atomic_write(out) as fresh:
         if out.exists() and (not out.is_file() or _MARK.encode() not in out.read_bytes()[:1000]):
             raise CogmapError(f"{out} exists and is not a report; choose another path or remove it first")
         fresh.write_text(page, encoding="utf-8")

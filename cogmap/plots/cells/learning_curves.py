@@ -41,9 +41,9 @@ def plot_courses(growth: pd.DataFrame, silencing: pd.DataFrame) -> Figure:
     for line, (rows, along, name) in zip(panels, lines, strict=True):
         for axes, (label, curves) in zip(line, PANELS.items(), strict=True):
             tidy(axes, x=name, y=label)
-            for column, (told, colour, style) in curves.items():
+            for column, (curve, colour, style) in curves.items():
                 axes.plot(
-                    rows[along], rows[column], style, color=colour, marker="o", markersize=3, label=told
+                    rows[along], rows[column], style, color=colour, marker="o", markersize=3, label=curve
                 )
             top = (
                 1.05 if label.endswith("(share)") else 1.1 * max(float(rows[list(curves)].max().max()), 1e-9)

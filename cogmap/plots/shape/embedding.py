@@ -52,7 +52,7 @@ def plot_embedding(
     check_array("embedding", embedding, (None, None))
     check_array("headings", headings, (len(embedding),))
     components = len(coordinates)
-    if components not in {2, 3} or not all(0 <= one < embedding.shape[1] for one in coordinates):
+    if components not in {2, 3} or not all(0 <= item < embedding.shape[1] for item in coordinates):
         raise CogmapError(
             f"coordinates {tuple(coordinates)} of {embedding.shape[1]} cannot be drawn; choose two or three"
         )
@@ -65,7 +65,7 @@ def plot_embedding(
         1, 1 + len(others), squeeze=False, subplot_kw={"projection": "3d"} if components == 3 else {}
     )[0]
     points = embedding[chosen][:, list(coordinates)].T
-    names = [f"coordinate {one + 1} (no unit)" for one in coordinates]
+    names = [f"coordinate {item + 1} (no unit)" for item in coordinates]
     _draw(panels[0], points, names, direction_colours(headings[chosen]))
     heading_bar(panels[0], pad=PADS[components])
     for axes, (name, values) in zip(panels[1:], others.items(), strict=True):

@@ -2,18 +2,18 @@ import numpy as np
 import pytest
 
 from arena import Arena, Brownian, Camera, explore
-from cogmap.evaluation.populations import Ground, as_one_table, competing_cells, grow_map
+from cogmap.evaluation.populations import GroundTruth, as_one_table, competing_cells, grow_map
 
 
 @pytest.fixture(scope="module")
-def ground() -> Ground:
+def truth() -> GroundTruth:
     room = Arena.load("open_field")
     rng = np.random.default_rng(0)
-    known, poses = (
+    train, poses = (
         np.column_stack([room.sample_free(4000, 0.18, rng), rng.uniform(-np.pi, np.pi, 4000)])
         for _ in range(2)
     )
-    return Ground.of(room, known, poses)
+    return GroundTruth.of(room, train, poses)
 
 
 def place_rates(poses: np.ndarray) -> np.ndarray:
@@ -26,8 +26,8 @@ def heading_rates(poses: np.ndarray) -> np.ndarray:
     return 10 * np.exp(5 * (np.cos(poses[:, 2:] - preferred) - 1))
 
 
-def test_ideal_cells_pass_as_what_they_are(ground: Ground) -> None:
-    place, heading = (ground.measure(tuned(ground.poses)) for tuned in (place_rates, heading_rates))
+def test_ideal_cells_pass_as_what_they_are(truth: GroundTruth) -> None:
+    place, heading = (truth.measure(tuned(truth.poses)) for tuned in (place_rates, heading_rates))
     assert place.place_figures["place_cells_passing"] == 1
     assert place.heading_figures["heading_cells_passing"] == 0
     assert place.place_figures["in_field_direction_vector"] < 0.15
@@ -38,22 +38,22 @@ def test_ideal_cells_pass_as_what_they_are(ground: Ground) -> None:
     assert table.groupby("population").size().to_dict() == {"place": 40, "heading": 20}
 
 
-def test_cells_tied_to_both_pass_as_neither(ground: Ground) -> None:
-    both = ground.measure(place_rates(ground.poses)[:, :20] * heading_rates(ground.poses))
+def test_cells_tied_to_both_pass_as_neither(truth: GroundTruth) -> None:
+    both = truth.measure(place_rates(truth.poses)[:, :20] * heading_rates(truth.poses))
     assert both.place_figures["place_cells_passing"] == both.heading_figures["heading_cells_passing"] == 0
     assert both.place_figures["in_field_direction_vector"] > 0.8
 
 
-def test_cells_without_a_compass_are_silent(ground: Ground) -> None:
-    blind = ground.measure(np.full((4000, 5), np.nan))
+def test_cells_without_a_compass_are_silent(truth: GroundTruth) -> None:
+    blind = truth.measure(np.full((4000, 5), np.nan))
     assert blind.heading_figures == {"heading_cells_passing": 0.0}
     assert blind.place_figures == {"place_cells_passing": 0.0, "place_coverage": 0.0, "field_area_m2": 0.0}
 
 
-def test_cells_that_compete_for_places_are_place_cells(ground: Ground) -> None:
-    (rates,) = competing_cells(ground.known[:, :2], ground.poses[:, :2], seed=0, cells=60)
-    assert ground.measure(rates).place_figures["place_cells_passing"] > 0.9
-    assert ground.position(ground.known[:, :2], ground.poses[:, :2])["position_median_m"] < 0.05
+def test_cells_that_compete_for_places_are_place_cells(truth: GroundTruth) -> None:
+    (rates,) = competing_cells(truth.train[:, :2], truth.poses[:, :2], seed=0, cells=60)
+    assert truth.measure(rates).place_figures["place_cells_passing"] > 0.9
+    assert truth.position(truth.train[:, :2], truth.poses[:, :2])["position_median_m"] < 0.05
 
 
 def test_a_map_is_grown_as_told() -> None:

@@ -4,29 +4,29 @@ import numpy as np
 import pytest
 
 from arena import Arena, Brownian, Camera, Nose, Rotation
-from cogmap.experiments.conditions import FRESH_SEED, Setting, poses_of
+from cogmap.experiments.conditions import FRESH_SEED, Conditions, poses_of
 
 ROOM = Arena.load("furnished")
 SMALL = Camera.panoramic(36, 6)
 
 
 def test_the_walk_is_the_same_whatever_the_camera() -> None:
-    setting = Setting(ROOM, 40, seed=3)
-    around, ahead = (setting.explore(Brownian(), camera) for camera in (SMALL, Camera.perspective(32, 24)))
+    conditions = Conditions(ROOM, 40, seed=3)
+    around, ahead = (conditions.explore(Brownian(), camera) for camera in (SMALL, Camera.perspective(32, 24)))
     np.testing.assert_array_equal(poses_of(around), poses_of(ahead))
     assert len(around) == 40
 
 
 def test_a_fresh_walk_is_another() -> None:
-    known, fresh = (Setting(ROOM, 40).explore(Brownian(), SMALL, views=20, fresh=x) for x in (False, True))
+    known, fresh = (Conditions(ROOM, 40).explore(Brownian(), SMALL, views=20, fresh=x) for x in (False, True))
     assert len(fresh) == 20
     assert not np.array_equal(poses_of(known), poses_of(fresh))
-    same = Setting(ROOM, 20, seed=FRESH_SEED).explore(Brownian(), SMALL)
+    same = Conditions(ROOM, 20, seed=FRESH_SEED).explore(Brownian(), SMALL)
     np.testing.assert_array_equal(poses_of(same), poses_of(fresh))
 
 
 def test_views_kept_in_a_folder_are_the_same(tmp_path: Path) -> None:
-    there, here = (Setting(ROOM, 30, scratch=folder) for folder in (tmp_path, None))
+    there, here = (Conditions(ROOM, 30, scratch=folder) for folder in (tmp_path, None))
     for fresh in (False, True):
         kept = there.explore(Brownian(), SMALL, fresh=fresh)
         np.testing.assert_array_equal(kept.views, here.explore(Brownian(), SMALL, fresh=fresh).views)
@@ -35,17 +35,17 @@ def test_views_kept_in_a_folder_are_the_same(tmp_path: Path) -> None:
 
 
 def test_what_has_no_truth_is_refused() -> None:
-    blind = Setting(ROOM, 20).explore(Brownian(), SMALL).without_truth()
+    blind = Conditions(ROOM, 20).explore(Brownian(), SMALL).without_truth()
     with pytest.raises(ValueError, match="has poses"):
         poses_of(blind)
 
 
 def test_what_the_setting_has_goes_before_what_the_experiment_has() -> None:
-    usual = Setting(ROOM, 30).explore(Brownian(), SMALL)
-    keen = Setting(ROOM, 30, nose=Nose(noise=0.0)).explore(Brownian(), SMALL)
+    usual = Conditions(ROOM, 30).explore(Brownian(), SMALL)
+    keen = Conditions(ROOM, 30, nose=Nose(noise=0.0)).explore(Brownian(), SMALL)
     clean = ROOM.odours.concentration(poses_of(keen)[:, :2])
     np.testing.assert_allclose(keen.odours, clean, rtol=1e-5)
     assert np.abs(np.log(usual.odours / clean)).max() > 0.1
-    spun = Setting(ROOM, 30, motion=Rotation(), camera=Camera.panoramic(72, 12)).explore(Brownian(), SMALL)
+    spun = Conditions(ROOM, 30, motion=Rotation(), camera=Camera.panoramic(72, 12)).explore(Brownian(), SMALL)
     assert spun.views.shape[1:] == (12, 72, 3)
     assert np.ptp(poses_of(spun)[:, :2]) < np.ptp(poses_of(usual)[:, :2])

@@ -8,7 +8,7 @@ import pytest
 
 from arena import Arena, Nose
 from cogmap import cli
-from cogmap.experiments.provenance import ROOM, write_about
+from cogmap.experiments.provenance import ROOM, write_provenance
 from cogmap.experiments.registry import EXPERIMENTS, Experiment, experiment
 from cogmap.experiments.result import Result
 
@@ -20,7 +20,10 @@ def written(folder: Path) -> dict:
 @pytest.mark.parametrize("where", ["--arena open_field ", ""])
 def test_the_command_repeats_the_result(where: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     quick = Experiment(
-        lambda setting: Result({"room": setting.room.to_toml()}), "open_field", 4000, elsewhere=bool(where)
+        lambda conditions: Result({"room": conditions.room.to_toml()}),
+        "open_field",
+        4000,
+        any_room=bool(where),
     )
     monkeypatch.setitem(EXPERIMENTS, "cyclic", quick)
     first, second = tmp_path / "first", tmp_path / "second"
@@ -37,13 +40,13 @@ def test_the_command_repeats_the_result(where: str, tmp_path: Path, monkeypatch:
 def test_a_room_of_ones_own_is_kept_and_named(tmp_path: Path) -> None:
     room = Arena.load("furnished")
     own = room.model_copy(update={"boxes": room.boxes[:1]})
-    write_about(tmp_path, ("demo",), own, seed=0)
+    write_provenance(tmp_path, ("demo",), own, seed=0)
     assert written(tmp_path)["command"] == f"cogmap demo --arena {ROOM} --seed 0"
     assert Arena.load(str(tmp_path / ROOM)) == own
 
 
 def test_versions_and_what_no_command_says(tmp_path: Path) -> None:
-    write_about(tmp_path, ("experiment", "fusion"), Arena.load("pillar"), nose=Nose(noise=0.3), seed=1)
+    write_provenance(tmp_path, ("experiment", "fusion"), Arena.load("pillar"), nose=Nose(noise=0.3), seed=1)
     about = written(tmp_path)
     assert about["command"] == "cogmap experiment fusion --arena pillar --seed 1"
     assert "0.3" in about["different"]["nose"]

@@ -19,7 +19,7 @@ VIEWS = {
     "roadmap": 1500,
     "distinguishability": 300,
     "fusion": 300,
-    "sources": 200,
+    "odour_ablation": 200,
     "goals": 600,
 }
 KEYS = {
@@ -31,7 +31,12 @@ KEYS = {
     "roadmap": {"success", "length_ratio_median", "paths_touching", "deviation_mean", "query_ms"},
     "distinguishability": {"confusion_white", "confusion_blue_wall", "betti_white", "betti_blue_wall"},
     "fusion": {"vision_only", "olfaction_only", "fused"},
-    "sources": {"1_sources_0.1_noise", "4_sources_0.1_noise", "3_sources_0_noise", "3_sources_0.3_noise"},
+    "odour_ablation": {
+        "1_sources_0.1_noise",
+        "4_sources_0.1_noise",
+        "3_sources_0_noise",
+        "3_sources_0.3_noise",
+    },
     "goals": {"goals", "ring_betti", "place_cells_passing", "heading_cells_passing", "heading_median_deg"},
 }
 

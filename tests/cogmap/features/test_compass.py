@@ -4,7 +4,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import minimum_spanning_tree
 
 from cogmap.features import compass
-from cogmap.features.compass import common_north, turns
+from cogmap.features.compass import synchronise_headings, turns
 from cogmap.features.strips import strips
 from cogmap.graph.neighbour_graph import neighbour_graph
 
@@ -73,7 +73,7 @@ def ring(count: int, rng: np.random.Generator) -> tuple[sp.csr_array, np.ndarray
 def test_north_is_common_where_turns_agree() -> None:
     graph, edges, headings = ring(300, np.random.default_rng(1))
     turned = np.angle(np.exp(1j * (headings[edges[:, 0]] - headings[edges[:, 1]])))
-    found = common_north(graph, edges, turned)
+    found = synchronise_headings(graph, edges, turned)
     assert np.abs(found).max() <= np.pi
     north = np.angle(np.exp(1j * (found - headings)).mean())
     assert off(found - headings - north).max() < 1e-2
@@ -87,7 +87,7 @@ def test_outliers_count_less_beside_a_tree_that_has_none(monkeypatch: pytest.Mon
     turned = headings[edges[:, 0]] - headings[edges[:, 1]] + 0.5 * (beside & (rng.random(len(edges)) < 0.1))
 
     def errors() -> np.ndarray:
-        found = common_north(graph, edges, turned)
+        found = synchronise_headings(graph, edges, turned)
         return off(np.diff(found[edges])[:, 0] - np.diff(headings[edges])[:, 0])
 
     robust = np.percentile(errors(), 90)
@@ -101,7 +101,7 @@ def test_least_squares_where_nothing_is_an_outlier(monkeypatch: pytest.MonkeyPat
     rng = np.random.default_rng(3)
     graph, edges, headings = ring(60, rng)
     turned = 0.1 * (headings[edges[:, 0]] - headings[edges[:, 1]]) + 0.05 * rng.standard_normal(len(edges))
-    found = common_north(graph, edges, turned)
+    found = synchronise_headings(graph, edges, turned)
     lengths = graph[edges[:, 0], edges[:, 1]]
     incidence = np.eye(60)[edges[:, 0]] - np.eye(60)[edges[:, 1]]
     root = 1 / (lengths + 0.1 * np.median(lengths))
@@ -113,9 +113,9 @@ def test_each_piece_has_a_north_of_its_own_and_a_lone_view_one_too() -> None:
     one, edges, headings = ring(40, np.random.default_rng(4))
     graph = sp.csr_array(sp.block_diag([one, one, sp.csr_array((1, 1))]))
     both, true = np.concatenate([edges, edges + 40]), np.concatenate([headings, headings, [0.0]])
-    found = common_north(graph, both, true[both[:, 0]] - true[both[:, 1]])
+    found = synchronise_headings(graph, both, true[both[:, 0]] - true[both[:, 1]])
     for piece in (slice(0, 40), slice(40, 80)):
         away = np.exp(1j * (found[piece] - true[piece]))
         assert off(np.angle(away / away[0])).max() < 1e-2
     assert found[80] == 0
-    assert common_north(sp.csr_array((1, 1)), np.empty((0, 2), int), np.empty(0)).tolist() == [0]
+    assert synchronise_headings(sp.csr_array((1, 1)), np.empty((0, 2), int), np.empty(0)).tolist() == [0]

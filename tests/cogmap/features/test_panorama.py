@@ -20,8 +20,8 @@ def test_a_turn_changes_no_magnitude_and_is_told() -> None:
     poses = np.column_stack([np.full((50, 2), 0.1), headings])
     poses[:, 1] = 1.0
     found = strips(CAMERA.render(ROOM, poses))
-    spread = np.linalg.norm(found.still - found.still.mean(axis=0), axis=1)
-    assert spread.max() < 0.1 * np.linalg.norm(found.still.mean(axis=0))
+    spread = np.linalg.norm(found.turn_invariant - found.turn_invariant.mean(axis=0), axis=1)
+    assert spread.max() < 0.1 * np.linalg.norm(found.turn_invariant.mean(axis=0))
     pairs = np.stack([np.arange(50), np.roll(np.arange(50), 1)], axis=1)
     assert off(turns(found, pairs) - headings + np.roll(headings, 1)).max() < 1
 
@@ -46,9 +46,9 @@ def test_features_are_near_where_poses_are_also_of_fresh_views() -> None:
     away = np.linalg.norm(walk.poses[nearest, :2] - fresh.poses[:, :2], axis=1)
     assert np.median(away) < 0.2
     assert np.median(off(walk.poses[nearest, 2] - fresh.poses[:, 2])) < 20
-    still = np.linalg.norm(known[:1, :40] - known[:, :40], axis=1)
+    turn_invariant = np.linalg.norm(known[:1, :40] - known[:, :40], axis=1)
     steps = np.linalg.norm(walk.poses[:1, :2] - walk.poses[:, :2], axis=1)
-    assert spearmanr(still[steps < 1], steps[steps < 1]).statistic > 0.8
+    assert spearmanr(turn_invariant[steps < 1], steps[steps < 1]).statistic > 0.8
     np.testing.assert_array_equal(code.fit_transform(walk.views), known)
     np.testing.assert_allclose(code.transform(walk.views[:5]), known[:5], atol=0.1)
 

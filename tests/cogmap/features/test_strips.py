@@ -22,15 +22,15 @@ def test_series_are_those_of_the_mean_rows() -> None:
     found = strips(VIEWS)
     np.testing.assert_allclose(found.grey, series(rows.mean(axis=3)), atol=1e-3)
     magnitudes = np.abs(series(np.moveaxis(rows, 3, 2))).transpose(0, 1, 3, 2)
-    np.testing.assert_allclose(found.still, magnitudes.reshape(7, -1), atol=1e-3)
+    np.testing.assert_allclose(found.turn_invariant, magnitudes.reshape(7, -1), atol=1e-3)
 
 
 def test_a_turn_of_whole_columns_multiplies_frequencies_and_changes_no_magnitude() -> None:
     # Turned to the left by Δ, what was in the middle is to the right of it.
-    still, turned = strips(VIEWS), strips(np.roll(VIEWS, 5, axis=2))
+    turn_invariant, turned = strips(VIEWS), strips(np.roll(VIEWS, 5, axis=2))
     phase = np.exp(-1j * np.arange(FREQUENCIES) * 5 * 2 * np.pi / 64)
-    np.testing.assert_allclose(turned.grey, still.grey * phase, atol=1e-3)
-    np.testing.assert_allclose(turned.still, still.still, atol=1e-3)
+    np.testing.assert_allclose(turned.grey, turn_invariant.grey * phase, atol=1e-3)
+    np.testing.assert_allclose(turned.turn_invariant, turn_invariant.turn_invariant, atol=1e-3)
 
 
 @pytest.mark.parametrize(("height", "rows"), [(1, 1), (6, 6), (13, 10)])

@@ -8,24 +8,24 @@ import numpy as np
 
 from arena import Brownian, Camera
 from cogmap.cli import main
-from cogmap.experiments.conditions import Setting
+from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.registry import EXPERIMENTS, Experiment
 from cogmap.experiments.result import Result
 
 DIARY, SECONDS = Path(os.environ["DIARY"]), float(os.environ.get("SECONDS", "0.1"))
 
 
-def cheap(setting: Setting) -> Result:
+def cheap(conditions: Conditions) -> Result:
     """Take a small walk and sleep a little."""
     with DIARY.open("a", encoding="utf-8") as diary:
-        diary.write(f"{setting.nose.noise} {setting.map['charts']} {setting.seed}\n")
-    walk = setting.explore(Brownian(), Camera.panoramic(16, 4), views=300)
+        diary.write(f"{conditions.nose.noise} {conditions.map['charts']} {conditions.seed}\n")
+    walk = conditions.explore(Brownian(), Camera.panoramic(16, 4), views=300)
     time.sleep(SECONDS)
-    if setting.map["charts"] == 13:
+    if conditions.map["charts"] == 13:
         raise RuntimeError("bad luck")
     smell = float(np.log(walk.odours).std())
     seen = int(np.asarray(walk.views).sum())
-    return Result({"smell": smell * setting.map["charts"], "seen": seen, "trusted": setting.seed < 2})
+    return Result({"smell": smell * conditions.map["charts"], "seen": seen, "trusted": conditions.seed < 2})
 
 
 EXPERIMENTS["cheap"] = Experiment(cheap, "furnished", 200, takes=("nose", "map"))

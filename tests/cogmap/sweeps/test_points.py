@@ -23,7 +23,7 @@ def test_every_parameter_reaches_its_place() -> None:
     )  # fmt: skip
     assert found.room == Arena.load("pillar").model_copy(update={"decay_length": 2.0, "sources": sources})
     assert found.views == 300
-    assert found.different == {
+    assert found.overrides == {
         "motion": Cyclic(passes=6),
         "camera": Camera.perspective(width=64),
         "nose": Nose(noise=0.3),
@@ -34,7 +34,7 @@ def test_every_parameter_reaches_its_place() -> None:
 def test_the_experiment_says_what_is_not_told() -> None:
     found = point(**{"camera.width": 90})
     assert (found.room.name, found.views, found.seed) == ("furnished", 200, 0)
-    assert found.different == {"camera": Camera.panoramic(width=90)}
+    assert found.overrides == {"camera": Camera.panoramic(width=90)}
 
 
 def test_seeds_repeat_every_point() -> None:
@@ -116,5 +116,5 @@ def test_the_same_point_twice_is_refused() -> None:
 
 def test_an_experiment_of_several_rooms_keeps_them_unless_one_is_given() -> None:
     grid: dict[str, Any] = {"views": [300, 400]}
-    assert not points_of(Plan.create(experiment="homology", grid=grid))[0].elsewhere
-    assert points_of(Plan.create(experiment="homology", grid=grid, set={"arena": "pillar"}))[0].elsewhere
+    assert not points_of(Plan.create(experiment="homology", grid=grid))[0].any_room
+    assert points_of(Plan.create(experiment="homology", grid=grid, set={"arena": "pillar"}))[0].any_room

@@ -11,7 +11,7 @@ import pytest
 from filelock import FileLock
 
 from cogmap import CogmapError, Plan, cli, sweep
-from cogmap.experiments.conditions import Setting
+from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.registry import EXPERIMENTS, Experiment
 from cogmap.sweeps import running
 from cogmap.sweeps.ledger import is_full_disk
@@ -22,16 +22,16 @@ UNLUCKY = Plan.create(experiment="toy", grid={"map.charts": [12, 13, 40]})
 
 
 @pytest.fixture
-def counted(monkeypatch: pytest.MonkeyPatch) -> list[Setting]:
+def counted(monkeypatch: pytest.MonkeyPatch) -> list[Conditions]:
     """Every setting that the experiment was done in."""
-    done: list[Setting] = []
+    done: list[Conditions] = []
     usual = EXPERIMENTS["toy"]
 
-    def conduct(setting: Setting) -> Any:
-        done.append(setting)
-        return usual.conduct(setting)
+    def run(conditions: Conditions) -> Any:
+        done.append(conditions)
+        return usual.run(conditions)
 
-    monkeypatch.setitem(EXPERIMENTS, "toy", usual._replace(conduct=conduct))
+    monkeypatch.setitem(EXPERIMENTS, "toy", usual._replace(run=run))
     return done
 
 
@@ -61,7 +61,7 @@ def test_a_table_with_a_row_for_each_point_and_seed(tmp_path: Path) -> None:
     }  # fmt: skip
 
 
-def test_what_is_finished_is_not_done_again(tmp_path: Path, counted: list[Setting]) -> None:
+def test_what_is_finished_is_not_done_again(tmp_path: Path, counted: list[Conditions]) -> None:
     whole = sweep(PLAN, tmp_path / "whole", workers=1)
     files = sorted((tmp_path / "whole" / "points").iterdir())
     content = {file.name: file.read_bytes() for file in files}
@@ -73,14 +73,14 @@ def test_what_is_finished_is_not_done_again(tmp_path: Path, counted: list[Settin
     assert content == {file.name: file.read_bytes() for file in files}
 
 
-def test_points_share_their_walks(tmp_path: Path, counted: list[Setting]) -> None:
+def test_points_share_their_walks(tmp_path: Path, counted: list[Conditions]) -> None:
     sweep(PLAN, tmp_path / "out", workers=1, keep_walks=True)
     walks = [file.name for file in (tmp_path / "out" / "walks").iterdir() if file.suffix == ".zarr"]
     assert len(walks) == 4  # two seeds and two noses
-    assert {setting.library for setting in counted} == {(tmp_path / "out" / "walks").resolve()}
+    assert {conditions.library for conditions in counted} == {(tmp_path / "out" / "walks").resolve()}
 
 
-def test_a_point_that_fails_is_a_row_and_can_be_done_again(tmp_path: Path, counted: list[Setting]) -> None:
+def test_a_point_that_fails_is_a_row_and_can_be_done_again(tmp_path: Path, counted: list[Conditions]) -> None:
     table = sweep(UNLUCKY, tmp_path / "out", workers=1)
     assert table["error"].tolist() == ["", "RuntimeError: thirteen charts are bad luck", ""]
     assert table["smell"].isna().tolist() == [False, True, False]
@@ -88,17 +88,19 @@ def test_a_point_that_fails_is_a_row_and_can_be_done_again(tmp_path: Path, count
     sweep(UNLUCKY, tmp_path / "out", workers=1)
     assert len(counted) == 3
     sweep(UNLUCKY, tmp_path / "out", workers=1, retry_failed=True)
-    assert [setting.map["charts"] for setting in counted] == [12, 13, 40, 13]
+    assert [conditions.map["charts"] for conditions in counted] == [12, 13, 40, 13]
 
 
 def test_a_point_that_is_mended_loses_its_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     sweep(UNLUCKY, tmp_path / "out", workers=1)
 
-    def mended(setting: Setting) -> Any:
-        return toy.conduct(Setting(setting.room, setting.views, library=setting.library, map={"charts": 40}))
+    def mended(conditions: Conditions) -> Any:
+        return toy.run(
+            Conditions(conditions.room, conditions.views, library=conditions.library, map={"charts": 40})
+        )
 
     toy = EXPERIMENTS["toy"]
-    monkeypatch.setitem(EXPERIMENTS, "toy", toy._replace(conduct=mended))
+    monkeypatch.setitem(EXPERIMENTS, "toy", toy._replace(run=mended))
     table = sweep(UNLUCKY, tmp_path / "out", workers=1, retry_failed=True)
     assert table["error"].tolist() == ["", "", ""]
     assert table["by_charts.share"].tolist() == [1 / 12, 1 / 40, 1 / 40]
@@ -137,12 +139,12 @@ def test_a_damaged_file_is_named(tmp_path: Path) -> None:
 def test_a_full_disk_is_one_sentence_and_loses_nothing(
     wrapped: bool,  # noqa: FBT001
     tmp_path: Path,
-    counted: list[Setting],
+    counted: list[Conditions],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     toy = EXPERIMENTS["toy"]
 
-    def fill(setting: Setting) -> Any:
+    def fill(conditions: Conditions) -> Any:
         if len(counted) == 2:
             full = OSError(errno.ENOSPC, "No space left on device")
             if wrapped:
@@ -150,9 +152,9 @@ def test_a_full_disk_is_one_sentence_and_loses_nothing(
                 error.__context__ = full
                 raise error
             raise full
-        return toy.conduct(setting)
+        return toy.run(conditions)
 
-    monkeypatch.setitem(EXPERIMENTS, "toy", toy._replace(conduct=fill))
+    monkeypatch.setitem(EXPERIMENTS, "toy", toy._replace(run=fill))
     with pytest.raises(CogmapError, match="no space left on a disk; all points that are finished are kept"):
         sweep(PLAN, tmp_path, workers=1)
     assert len(list((tmp_path / "points").iterdir())) == 2

@@ -11,7 +11,7 @@ VIEWS = 1600
 
 @pytest.fixture(scope="module")
 def result() -> Result:
-    return experiment("neurons", views=VIEWS)
+    return experiment("development", views=VIEWS)
 
 
 def test_cells_grow_with_experience(result: Result) -> None:

@@ -39,7 +39,7 @@ def test_a_pillar_is_a_hole_and_turning_a_circle(name: str) -> None:
 
 def test_rooms_visited_unless_told_are_those_whose_holes_are_known() -> None:
     homology = EXPERIMENTS["homology"]
-    assert {homology.room, *homology.further} == HOLES.keys() - {"two_rooms"}
+    assert {homology.room, *homology.extra_rooms} == HOLES.keys() - {"two_rooms"}
 
 
 def test_only_the_piece_that_is_walked_counts() -> None:
@@ -129,9 +129,9 @@ def test_it_writes_right_and_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_unless_told_it_visits_all_its_rooms(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fake(setting: module.Setting) -> list[Case]:
+    def fake(conditions: module.Conditions) -> list[Case]:
         nerve = Nerve((1, 1), (60, 9, 9))
-        return [Case(setting.room.name, "heading", (1, 1), found((1, 1, 0)), nerve)]
+        return [Case(conditions.room.name, "heading", (1, 1), found((1, 1, 0)), nerve)]
 
     monkeypatch.setattr(module, "_visit", fake)
     metrics = experiment("homology").metrics

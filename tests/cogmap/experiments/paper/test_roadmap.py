@@ -6,7 +6,7 @@ import pytest
 from arena import Arena, Box, Wall
 from cogmap import CogmapError
 from cogmap.evaluation.deviation import path_deviation
-from cogmap.experiments.conditions import Setting
+from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.paper import roadmap as module
 from cogmap.experiments.paper.roadmap import _arrives, _plan, _routes_table, _scores, _summary, draw_pairs
 from cogmap.navigation import VisualRoadmap
@@ -105,7 +105,7 @@ def test_plans_lead_from_start_through_views_to_goal_and_fail_where_there_is_no_
 
 def test_without_a_peer_few_views_lead_almost_everywhere_and_on_short_ways() -> None:
     with patch.object(module, "prm_paths", return_value=None):
-        found = module.roadmap(Setting(Arena.load("obstacles"), 2500, seed=0))
+        found = module.roadmap(Conditions(Arena.load("obstacles"), 2500, seed=0))
     assert not found.metrics["prm"]
     assert not [key for key in found.metrics if key.startswith("prm_") or key == "deviation_ratio"]
     assert found.metrics["success"] > 0.8

@@ -2,15 +2,15 @@ import numpy as np
 import pytest
 
 from arena import Arena, Camera, Rotation
-from cogmap.experiments.conditions import Setting, poses_of
+from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.paper.view_manifold import COORDINATES, ViewManifold, view_manifold
 
 
 @pytest.fixture(scope="module")
 def spin() -> tuple[ViewManifold, np.ndarray]:
-    setting = Setting(Arena.load("furnished"), 800)
-    walk = setting.explore(Rotation(), Camera.perspective(160, 120))
-    return view_manifold(walk.views, setting), poses_of(walk)
+    conditions = Conditions(Arena.load("furnished"), 800)
+    walk = conditions.explore(Rotation(), Camera.perspective(160, 120))
+    return view_manifold(walk.views, conditions), poses_of(walk)
 
 
 def test_a_spin_is_a_ring_with_one_degree_of_freedom(spin: tuple[ViewManifold, np.ndarray]) -> None:
