@@ -1,4 +1,4 @@
-"""The values that describe a body, a nose or a motion: checked once, then never changed."""
+"""Settings: the values that describe a body, a nose or a motion, checked once, then never changed."""
 
 from reprlib import Repr
 

@@ -1,4 +1,4 @@
-"""The room from above, drawn fast enough to watch an animal walk."""
+"""The top view of a room, drawn fast enough to watch an animal walk."""
 
 from functools import cached_property
 

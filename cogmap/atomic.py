@@ -1,4 +1,4 @@
-"""Files and folders that appear under their name only when they are whole."""
+"""Atomic writes: files and folders that appear under their name only when they are whole."""
 
 from __future__ import annotations
 

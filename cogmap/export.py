@@ -1,4 +1,4 @@
-"""A recording with its cells as NWB, the format in which physiologists share such data."""
+"""NWB export: a recording with its cells in the format in which physiologists share such data."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What maps grown from the same charts have learnt apart, added up."""
+"""Merging: what maps grown from the same charts have learnt apart, added up."""
 
 from __future__ import annotations
 

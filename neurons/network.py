@@ -1,4 +1,4 @@
-"""The layers in a row, and the stages in which they learn."""
+"""The network: its layers in a row, and the stages in which they learn."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The body: a differential-drive disc that walls stop."""
+"""The body: a disc with differential drive (two wheels), which walls stop."""
 
 import math
 from typing import Annotated

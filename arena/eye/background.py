@@ -1,4 +1,4 @@
-"""What an empty world looks like: the plain floor up to the horizon, and the ceiling above."""
+"""The background of an empty world: the plain floor up to the horizon, and the ceiling above."""
 
 from functools import lru_cache
 

@@ -1,4 +1,4 @@
-"""The kernels that turn painted columns into the rows of an image.
+"""Pixels: the kernels that turn painted columns into the rows of an image.
 
 Columns come in fours, each red, green, blue and a spare byte a row, since twelve bytes are three whole words:
 to write an image of three-byte pixels column by column takes several times as long.

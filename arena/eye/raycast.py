@@ -1,4 +1,4 @@
-"""Where the rays of one upright eye meet vertical faces on a flat floor: the geometry behind every image.
+"""Ray casting: where the rays of one upright eye meet vertical faces, the geometry behind every image.
 
 The faces are projected once per view and listed by the image columns that they touch. A column is split
 wherever a face in sight begins or ends inside it; in each part the faces are met from near to far. Within a

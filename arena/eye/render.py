@@ -1,4 +1,4 @@
-"""The kernels that paint what the eye sees.
+"""Rendering: the kernels that paint what the eye sees.
 
 Within a part of a column the gaze climbs from the floor at the animal's feet to the ceiling, painting
 whatever is not hidden behind something nearer. A solid lower than the eye is ground from its near face to its

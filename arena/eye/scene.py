@@ -1,4 +1,4 @@
-"""A room as the eye's kernels want it: tables of numbers."""
+"""The scene: a room as the eye's kernels want it, in tables of numbers."""
 
 from functools import lru_cache
 from typing import NamedTuple

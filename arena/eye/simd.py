@@ -1,4 +1,4 @@
-"""Four channels at once: numba leaves LLVM's vectoriser of straight-line code off, so this is spelt out."""
+"""SIMD of four channels: numba leaves LLVM's vectoriser of straight-line code off, so it is spelt out."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The kernels that lay textures and plain colours on the rows of one image column.
+"""Texture sampling: the kernels that lay textures and plain colours on the rows of one image column.
 
 A column is red, green, blue and a spare number for every row, summed up part by part. Whatever is laid on a
 row is the mean over the area that the row covers there, so that the image changes smoothly as the eye moves.

@@ -1,4 +1,4 @@
-"""Ways of moving through an arena, one file each."""
+"""Motions: ways of moving through an arena, one file each."""
 
 from arena.motions.base import Motion, Walk
 

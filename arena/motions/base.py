@@ -1,4 +1,4 @@
-"""Ways of moving through an arena, one file each."""
+"""The contract of a motion: it steers a body through an arena and says when it looks."""
 
 from collections.abc import Mapping
 from typing import NamedTuple, Protocol, runtime_checkable

@@ -1,4 +1,4 @@
-"""The wandering of an animal that explores: gentle curves, turns at walls, now and then a look around."""
+"""Brownian wandering of an animal that explores: gentle curves, turns at walls, at times a look around."""
 
 import math
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Ways of moving by their names."""
+"""Motions by their names."""
 
 from collections.abc import Callable
 

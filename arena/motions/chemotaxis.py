@@ -1,4 +1,4 @@
-"""Back to the source of an odour, again and again."""
+"""Chemotaxis: back to the source of an odour, again and again."""
 
 import math
 from collections.abc import Generator, Iterator

@@ -1,4 +1,4 @@
-"""Straight ways through a room."""
+"""Corridors: straight ways through a room."""
 
 import math
 

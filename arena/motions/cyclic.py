@@ -1,4 +1,4 @@
-"""A run along one axis with spins all the way: all headings, everywhere on a line."""
+"""Cyclic motion: a run along one axis with spins all the way, all headings everywhere on a line."""
 
 import math
 from collections.abc import Iterator

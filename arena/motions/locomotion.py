@@ -1,4 +1,4 @@
-"""What motions share: the length of a step, turning, going, and looking on the way."""
+"""Locomotion that motions share: the length of a step, turning, going, and taking views on the way."""
 
 import math
 from collections.abc import Iterator

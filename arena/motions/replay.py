@@ -1,4 +1,4 @@
-"""The path of an animal, as recorded."""
+"""Replay of an animal's recorded path."""
 
 from pathlib import Path
 from typing import Annotated, ClassVar

@@ -1,4 +1,4 @@
-"""A spin on the spot: all headings at one place."""
+"""Rotation, a spin on the spot: all headings at one place."""
 
 import math
 from typing import Annotated, ClassVar

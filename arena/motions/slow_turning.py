@@ -1,4 +1,4 @@
-"""A walk on which the head turns slowly, whichever way the body goes."""
+"""Slow turning: a walk on which the head turns slowly, whichever way the body goes."""
 
 from __future__ import annotations
 

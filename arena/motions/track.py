@@ -1,4 +1,4 @@
-"""To and fro along a corridor."""
+"""Linear track: to and fro along a corridor."""
 
 import math
 from collections.abc import Iterator

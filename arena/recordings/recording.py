@@ -1,4 +1,4 @@
-"""What an exploration leaves behind: views, smells, times and (for scoring only) poses."""
+"""The recording that an exploration leaves: views, smells, times and (for scoring only) poses."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace

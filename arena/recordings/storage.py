@@ -1,4 +1,4 @@
-"""How a recording lies on disk: a zarr 3 group, the views in shards."""
+"""Storage of a recording on disk: a zarr 3 group, the views in shards."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""What walls are made of: procedural textures, and the tables that let the eye average them exactly.
+"""Materials of walls: procedural textures, and the mip maps that let the eye average them exactly.
 
 A texture is a tile of `TILE` texels, 1 cm each, repeated along and up the wall. Each is made from its name
 alone, so a material looks the same in every room, run and seed. All vary on scales from a centimetre to a

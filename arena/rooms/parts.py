@@ -1,4 +1,4 @@
-"""What a room is made of: walls, boxes, pillars, blocks and odour sources."""
+"""Parts of a room: walls, boxes, pillars, blocks and odour sources."""
 
 from __future__ import annotations
 

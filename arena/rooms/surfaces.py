@@ -1,4 +1,4 @@
-"""The vertical faces of a room: what the ray caster works on."""
+"""Surfaces: the vertical faces of a room, which the ray caster works on."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""The sense of smell: what a noisy, slowly fluctuating nose makes of a concentration."""
+"""The nose, noisy and slowly fluctuating: what it makes of a concentration."""
 
 import math
 import typing

@@ -1,4 +1,4 @@
-"""How far a path strays from the straight one."""
+"""Deviation of a path from the straight one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The shape of everything that a map knows: its views, its fusion, its two populations."""
+"""Homology of everything that a map knows: its views, its fusion, its two populations."""
 
 import numpy as np
 from jaxtyping import Float

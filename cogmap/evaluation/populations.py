@@ -1,4 +1,4 @@
-"""What experiments share: a map learnt from a walk, cells that compete for anything, and their measures."""
+"""Populations of cells: a map grown from a walk, cells that compete for anything, and their measures."""
 
 from __future__ import annotations
 

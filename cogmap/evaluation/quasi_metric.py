@@ -1,4 +1,4 @@
-"""How distances along the manifold of views relate to how far the body moved."""
+"""The quasi-metric of views: how distances along their manifold relate to how far the body moved."""
 
 from __future__ import annotations
 

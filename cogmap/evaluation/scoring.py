@@ -1,4 +1,4 @@
-"""Where truth enters: how well the activity of a map tells place and heading."""
+"""The score of a map, where truth enters: how well its activity tells place and heading."""
 
 from __future__ import annotations
 

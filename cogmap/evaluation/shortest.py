@@ -1,4 +1,4 @@
-"""The shortest paths that a body can take, for comparison: here the room is known."""
+"""Shortest paths that a body can take, for comparison: here the room is known."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where an experiment takes place, and how much of it there is."""
+"""Conditions of an experiment: where it takes place, and how much of it there is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What wrote a result: the command that repeats it, and the versions of everything it stood on."""
+"""Provenance of a result: the command that repeats it, and the versions of everything it stood on."""
 
 from __future__ import annotations
 

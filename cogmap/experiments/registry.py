@@ -1,4 +1,4 @@
-"""Which experiments there are, and how to run one by its name."""
+"""The registry of experiments, and how to run one by its name."""
 
 from __future__ import annotations
 

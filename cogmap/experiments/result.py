@@ -1,4 +1,4 @@
-"""What an experiment finds, and how it is written down."""
+"""The result of an experiment, and how it is written down."""
 
 from __future__ import annotations
 

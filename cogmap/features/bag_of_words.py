@@ -1,4 +1,4 @@
-"""A view as the set of visual words it shows."""
+"""Bags of visual words: a view as the set of words it shows."""
 
 from __future__ import annotations
 

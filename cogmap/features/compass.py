@@ -1,4 +1,4 @@
-"""By how much the body turned between two panoramas, and which way is north in all of them."""
+"""A visual compass: by how much the body turned between panoramas, and one north for all of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be told about spots of an image: texture around keypoints, colours of patches."""
+"""Descriptors of spots of an image: SIFT around keypoints, colours of patches."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Views as small blurred pictures, which change smoothly from pose to pose."""
+"""Image codes: views as small blurred pictures, which change smoothly from pose to pose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Panoramas as points whose distance is that of the poses they were taken from, up to scale."""
+"""Panorama codes: points whose distance is that of the poses they were taken from, up to scale."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Words: typical descriptors, and which of them a descriptor resembles most."""
+"""Vocabulary of visual words: typical descriptors, and which of them a descriptor resembles most."""
 
 from __future__ import annotations
 

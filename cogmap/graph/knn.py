@@ -1,4 +1,4 @@
-"""Which points of a cloud are nearest: exactly, or by descent where that would be slow."""
+"""Nearest neighbours (k-NN): which points are nearest, exactly, or by descent where that would be slow."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who is next to whom in a cloud."""
+"""Neighbour graphs: who is next to whom in a cloud."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Clouds of points: one row each, dense or sparse."""
+"""Point clouds: one row a point, dense or sparse."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The best of many candidates, kept while they stream by."""
+"""Top k: the best of many candidates, kept while they stream by."""
 
 import typing
 

@@ -1,4 +1,4 @@
-"""What a cognitive map says of views."""
+"""Activity of a cognitive map: what it says of views."""
 
 from dataclasses import dataclass
 

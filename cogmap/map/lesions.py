@@ -1,4 +1,4 @@
-"""What is in a map, by the names it is saved under, and copies of it with some of that changed."""
+"""Lesions: the state of a map by the names it is saved under, and copies with some of it changed."""
 
 from __future__ import annotations
 

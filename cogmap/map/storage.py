@@ -1,4 +1,4 @@
-"""How a map lies on disk: a folder with its weights and its settings, neither of which can run code."""
+"""Storage of a map on disk: a folder with its weights and its settings, neither of which can run code."""
 
 import json
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Where a view was taken, in terms of remembered views."""
+"""Localisation: where a view was taken, in terms of remembered views."""
 
 from __future__ import annotations
 

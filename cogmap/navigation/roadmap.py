@@ -1,4 +1,4 @@
-"""A way from one view to another through remembered views."""
+"""The visual roadmap: a way from one view to another through remembered views."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What becomes of a map when one thing about the animal is varied, then another."""
+"""One factor at a time: what becomes of a map when one thing about the animal is varied, then another."""
 
 from __future__ import annotations
 

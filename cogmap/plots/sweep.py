@@ -1,4 +1,4 @@
-"""A statistic of a sweep against each parameter that was varied."""
+"""Trends of a sweep: a statistic against each parameter that was varied."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much a bar stands out by chance: thresholds calibrated on clouds without holes.
+"""Thresholds of Betti numbers: how much a bar stands out by chance, calibrated on clouds without holes.
 
 `python -m cogmap.shape.betti_thresholds` makes the table of thresholds anew.
 """

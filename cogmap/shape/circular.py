@@ -1,4 +1,4 @@
-"""The angle along the loop of a cloud."""
+"""The circular coordinate: the angle along the loop of a cloud."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The coordinate of a cylinder that its loop leaves over."""
+"""The height coordinate of a cylinder, which its loop leaves over."""
 
 from __future__ import annotations
 

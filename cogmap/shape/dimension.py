@@ -1,4 +1,4 @@
-"""How many degrees of freedom a cloud has."""
+"""Intrinsic dimension: how many degrees of freedom a cloud has."""
 
 from __future__ import annotations
 

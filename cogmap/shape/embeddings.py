@@ -1,4 +1,4 @@
-"""Ways of giving a cloud few coordinates, with one face: scikit-learn's."""
+"""Embeddings, ways of giving a cloud few coordinates, with one face: scikit-learn's."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Coordinates in which straight lines are as long as shortest paths in a neighbour graph."""
+"""Landmark Isomap: coordinates in which straight lines are as long as shortest paths in a neighbour graph."""
 
 from __future__ import annotations
 

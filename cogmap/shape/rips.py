@@ -1,4 +1,4 @@
-"""Landmarks of a metric space and the Vietoris-Rips bars on them."""
+"""Vietoris-Rips persistence on landmarks of a metric space."""
 
 from __future__ import annotations
 

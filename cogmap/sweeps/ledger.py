@@ -1,4 +1,4 @@
-"""How a sweep lies on disk: its plan, and one file for each point that is finished."""
+"""The ledger of a sweep on disk: its plan, and one file for each point that is finished."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a sweep varies, as in a TOML file."""
+"""The plan of a sweep: what it varies, as in a TOML file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Points drawn from ranges of parameters, at random or evenly."""
+"""Sampling of points from ranges of parameters, at random or evenly."""
 
 from __future__ import annotations
 

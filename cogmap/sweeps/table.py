@@ -1,4 +1,4 @@
-"""One tidy table of a sweep: a row for each point and seed."""
+"""The tidy table of a sweep: a row for each point and seed."""
 
 from __future__ import annotations
 

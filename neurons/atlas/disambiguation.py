@@ -1,4 +1,4 @@
-"""One smell at two places: a unit keeps to one of them, where its charts hang together."""
+"""Disambiguation of a smell at two places: a place unit keeps to one, where its charts hang together."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The direction in each chart along which smell does not change: turning on the spot."""
+"""The heading axis of each chart: the direction along which smell does not change, turning on the spot."""
 
 import torch
 from jaxtyping import Float

@@ -1,4 +1,4 @@
-"""The metric map of places, and the compass's offset in each, from the order of views: bodies go ahead."""
+"""The metric map of places, and the compass's offset at each, learnt from the order of views alone."""
 
 from typing import NamedTuple
 

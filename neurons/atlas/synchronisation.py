@@ -1,4 +1,4 @@
-"""Signs, then phases, agreed over the atlas: lateral weights turn local axes into one compass."""
+"""Synchronisation of signs, then phases, over the atlas: lateral weights turn local axes into one compass."""
 
 from __future__ import annotations
 

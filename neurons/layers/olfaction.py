@@ -1,4 +1,4 @@
-"""What each chart knows of smell: an affine map from chart coordinates to log odour."""
+"""Olfaction, what each chart knows of smell: an affine map from chart coordinates to log odour."""
 
 import torch
 from jaxtyping import Float, Int

@@ -1,1 +1,1 @@
-"""What can be read from rates: places, headings, patterns."""
+"""Decoding of rates: places, headings, patterns."""

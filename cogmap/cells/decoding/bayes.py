@@ -1,4 +1,4 @@
-"""What spikes say about where the animal is or looks, by Bayes' rule."""
+"""Bayesian decoding: what spikes say about where the animal is or looks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading place and heading out of activity, by decoders that were shown the truth of other views."""
+"""Decoders of place and heading from activity, which were shown the truth of other views."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Population vectors: the rates of all cells at once."""
+"""Population vectors: the rates of all cells at once, as patterns to tell places by."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How smooth a rate map is by itself."""
+"""Spatial coherence: how smooth a rate map is by itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What makes a cell a head-direction cell."""
+"""Statistics of head-direction cells, and what makes a cell one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much the rate of a cell tells about the place."""
+"""Spatial information: how much the rate of a cell tells about the place."""
 
 from __future__ import annotations
 

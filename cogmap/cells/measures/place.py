@@ -1,4 +1,4 @@
-"""What makes a cell a place cell."""
+"""Statistics of place cells, and what makes a cell one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether spikes prefer a direction at all."""
+"""The Rayleigh test: whether spikes prefer a direction at all."""
 
 from __future__ import annotations
 

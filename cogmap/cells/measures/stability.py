@@ -1,4 +1,4 @@
-"""Whether a cell is tuned the same in both halves of a recording."""
+"""Stability: whether a cell is tuned the same in both halves of a recording."""
 
 from __future__ import annotations
 

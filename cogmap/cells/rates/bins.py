@@ -1,4 +1,4 @@
-"""The bins that views are counted in: a grid over the room, a ring of headings."""
+"""Bins that views are counted in: a grid over the room, a ring of headings."""
 
 from __future__ import annotations
 

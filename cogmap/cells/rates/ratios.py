@@ -1,4 +1,4 @@
-"""Division where nothing over nothing means that nothing is known."""
+"""Ratios, of which nothing over nothing means that nothing is known."""
 
 from __future__ import annotations
 

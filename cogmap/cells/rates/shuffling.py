@@ -1,4 +1,4 @@
-"""What a statistic would be if a cell knew nothing of the walk."""
+"""Shuffling: what a statistic would be if a cell knew nothing of the walk, its null distribution."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The peer that knows the room: OMPL's probabilistic roadmap, in a process of its own."""
+"""OMPL's probabilistic roadmap (PRM), the peer that knows the room, in a process of its own."""
 
 from __future__ import annotations
 

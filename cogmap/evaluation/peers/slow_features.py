@@ -1,4 +1,4 @@
-"""The peer: slow feature analysis, then independent components, on the order of views."""
+"""Slow feature analysis, the peer: then independent components, on the order of views."""
 
 from __future__ import annotations
 

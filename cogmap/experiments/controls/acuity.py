@@ -1,4 +1,4 @@
-"""How sharp an eye must be, and how many charts a map must have."""
+"""Visual acuity: how sharp an eye must be, and how many charts a map must have."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The walls of a square room turn by 90° and the smells stay: what the cells follow."""
+"""Cue rotation: the walls of a square room turn by 90° and the smells stay; what the cells follow."""
 
 from __future__ import annotations
 

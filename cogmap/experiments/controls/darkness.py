@@ -1,4 +1,4 @@
-"""The same cells in the light without smell, and in the dark by smell alone."""
+"""Darkness: the same cells in the light without smell, and in the dark by smell alone."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cells as neurons: their weights from charts, how these grow, what is left when charts fall silent."""
+"""Development and lesions of cells: how weights from charts grow, what is left when charts fall silent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Place cells in the open field and on a path, where nobody turns."""
+"""Directionality of place cells: in the open field, and on a path where nobody turns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sight alone, smell alone, and both: what cells come of each."""
+"""Fusion of sight and smell: what cells come of sight alone, of smell alone, and of both."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The holes of everything that a map knows, room by room, beside those that the rooms have."""
+"""Homology of everything that a map knows, room by room, beside the holes that the rooms have."""
 
 from __future__ import annotations
 

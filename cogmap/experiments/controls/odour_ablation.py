@@ -1,4 +1,4 @@
-"""How many odours it takes, and how well they must be smelt."""
+"""Odour ablation: how many odours it takes, and how well they must be smelt."""
 
 from __future__ import annotations
 

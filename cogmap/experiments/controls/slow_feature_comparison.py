@@ -1,4 +1,4 @@
-"""Does it matter how the animal walks? Slow features beside the fusion, on the same views."""
+"""Slow features beside the fusion, on the same views, learnt on four walks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A walk all over the room: the images lie on a solid torus of position and heading."""
+"""A brownian walk all over the room: the images lie on a solid torus of position and heading."""
 
 from __future__ import annotations
 

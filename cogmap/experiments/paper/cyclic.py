@@ -1,4 +1,4 @@
-"""To and fro with spins: the images lie on a cylinder of heading and translation."""
+"""Cyclic motion, to and fro with spins: the images lie on a cylinder of heading and translation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A white room in which opposite corners look the same, and a blue wall that tells them apart."""
+"""Distinguishable views: in a white room opposite corners look the same, and a blue wall tells them apart."""
 
 from __future__ import annotations
 

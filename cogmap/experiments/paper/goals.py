@@ -1,4 +1,4 @@
-"""The paper's own protocol: rings of views at goals are place cells, and rings compared tell the heading."""
+"""Goals, as in the paper: rings of views at them are place cells, rings compared tell the heading."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a view was taken, told by remembered views (Table 3)."""
+"""Localisation: where a view was taken, told by remembered views (Table 3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Ways among obstacles, planned from panoramas alone (Algorithm 1, Fig. 7)."""
+"""Visual roadmaps: ways among obstacles, planned from panoramas alone (Algorithm 1, Fig. 7)."""
 
 from __future__ import annotations
 

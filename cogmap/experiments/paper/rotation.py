@@ -1,4 +1,4 @@
-"""A spin on the spot: the images lie on a ring, and a small network reads the heading off it."""
+"""Rotation on the spot: the images lie on a ring, and a small network reads the heading off it."""
 
 from __future__ import annotations
 

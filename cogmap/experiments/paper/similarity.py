@@ -1,4 +1,4 @@
-"""Which measure of likeness between images knows views from nearby poses."""
+"""Image similarity: which measure of it knows views from nearby poses."""
 
 from __future__ import annotations
 

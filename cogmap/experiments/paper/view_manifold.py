@@ -1,4 +1,4 @@
-"""From images to the shape that they lie on: words, neighbour graph, coordinates, loop, holes."""
+"""The view manifold, the shape that images lie on: words, neighbour graph, coordinates, loop, holes."""
 
 from __future__ import annotations
 

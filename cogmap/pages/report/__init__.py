@@ -1,4 +1,4 @@
-"""A result as one HTML page to show to someone."""
+"""The report: a result as one HTML page to show to someone."""
 
 from cogmap.pages.report.page import report
 

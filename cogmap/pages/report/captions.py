@@ -1,4 +1,4 @@
-"""What the pictures of a result show, for those who read them and for those who cannot see them."""
+"""Captions of the pictures of a result, for those who read them and for those who cannot see them."""
 
 CAPTIONS = {
     "barcodes": "Bars of loops and voids, each with the threshold above which it counts",

@@ -1,4 +1,4 @@
-"""What a folder of results holds: figures, numbers, tables, and what wrote them."""
+"""Contents of a folder of results: figures, numbers, tables, and what wrote them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One self-contained page: no script, and nothing that is fetched from elsewhere."""
+"""The report's page: self-contained, no script, and nothing that is fetched from elsewhere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The weights from charts to cells, where the charts' own views were taken."""
+"""Afferent weights from charts to cells, drawn where the charts' own views were taken."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which cells of several populations are place cells, which head-direction cells, and which neither."""
+"""Cell types: which cells are place cells, which head-direction cells, and which neither."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A few cells of several populations: where they fire, and in which direction."""
+"""Example cells of several populations: where they fire, and in which direction."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which direction head-direction cells fire in."""
+"""Tuning curves: which direction head-direction cells fire in."""
 
 from __future__ import annotations
 

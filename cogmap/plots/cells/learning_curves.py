@@ -1,4 +1,4 @@
-"""What both populations are worth while they learn, and while charts fall silent."""
+"""Learning curves: what both populations are worth while they learn, and while charts fall silent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where place cells fire."""
+"""Rate maps: where place cells fire."""
 
 from __future__ import annotations
 

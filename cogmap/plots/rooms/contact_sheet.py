@@ -1,4 +1,4 @@
-"""A room as the animal sees it: a contact sheet."""
+"""A contact sheet of a room as the animal sees it."""
 
 from __future__ import annotations
 

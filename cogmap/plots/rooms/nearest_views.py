@@ -1,4 +1,4 @@
-"""What each measure of likeness takes for the same view."""
+"""Nearest views: what each measure of likeness takes for the same view."""
 
 from __future__ import annotations
 

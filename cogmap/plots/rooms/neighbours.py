@@ -1,4 +1,4 @@
-"""Views and the remembered views most like them (Table 3)."""
+"""Neighbours: views and the remembered views most like them (Table 3)."""
 
 from __future__ import annotations
 

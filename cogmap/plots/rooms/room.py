@@ -1,4 +1,4 @@
-"""The arena from above."""
+"""The room from above."""
 
 from __future__ import annotations
 

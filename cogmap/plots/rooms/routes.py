@@ -1,4 +1,4 @@
-"""Planned ways among obstacles, from above (Fig. 7)."""
+"""Routes planned among obstacles, from above (Fig. 7)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the eye saw: a contact sheet."""
+"""Views: what the eye saw, in rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The loops and voids of many clouds at a glance: a line per room, a column per cloud."""
+"""Barcodes of many clouds at a glance: loops and voids, a line per room, a column per cloud."""
 
 from __future__ import annotations
 

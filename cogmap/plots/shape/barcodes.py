@@ -1,4 +1,4 @@
-"""The loops and voids of clouds, and how far they stand out."""
+"""Persistence barcodes: the loops and voids of clouds, and how far they stand out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Views as points of a manifold."""
+"""An embedding: views as points of a manifold."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where in a room a view is taken for that from the opposite pose."""
+"""Confusion: where in a room a view is taken for that from the opposite pose."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How well the learnt phase tells the heading."""
+"""Heading errors: how well the learnt phase tells the heading."""
 
 from __future__ import annotations
 

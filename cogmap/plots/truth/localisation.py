@@ -1,4 +1,4 @@
-"""How well views are placed."""
+"""Localisation errors: how well views are placed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How well the recalled odour tells the place."""
+"""Position errors: how well the recalled odour tells the place."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Distances along the manifold of views against how far the body moved."""
+"""The quasi-metric: distances along the manifold of views against how far the body moved."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Height on a cylinder of views against the distance walked."""
+"""Translation: height on a cylinder of views against the distance walked."""
 
 from __future__ import annotations
 
