@@ -3,15 +3,15 @@
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.disambiguation import place_branches
 from neurons.atlas.heading_axis import heading_axes
-from neurons.atlas.metric_map import MetricMap
+from neurons.atlas.metric_map import MetricMap, MetricReading
 from neurons.atlas.synchronisation import Compass, synchronise
 from neurons.errors import NeuronsError
 from neurons.layers.afferents import Afferents
-from neurons.layers.charts import Charts
+from neurons.layers.charts import Charts, NearestCharts
 from neurons.layers.heading_cells import HeadDirectionCells
 from neurons.layers.olfaction import Olfaction
 from neurons.layers.place_cells import PlaceCells
-from neurons.layers.readout import Readout
+from neurons.layers.readout import ChartActivity, Readout
 from neurons.layers.retina import Retina
 from neurons.layers.sanger import Sanger
 from neurons.merging import forked, merge
@@ -20,10 +20,13 @@ from neurons.network import Network
 __all__ = [
     "Afferents",
     "Atlas",
+    "ChartActivity",
     "Charts",
     "Compass",
     "HeadDirectionCells",
     "MetricMap",
+    "MetricReading",
+    "NearestCharts",
     "Network",
     "NeuronsError",
     "Olfaction",

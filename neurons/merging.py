@@ -31,7 +31,7 @@ OWN = ("views_seen", "metric_map.recent")
 
 
 def forked(network: Network) -> Network:
-    """Copy layers, but for what they have summed up in the present stage.
+    """Copy a network, but for what it has summed up in the present stage.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def forked(network: Network) -> Network:
 
 
 def merge(network: Network, other: Network) -> None:
-    """Add to the layers what others, in the same stage on the same charts, have learnt in it.
+    """Add to a network what another, in the same stage on the same charts, has learnt in it.
 
     The views of both count, but do not carry the stage beyond its end.
 
@@ -73,7 +73,7 @@ def merge(network: Network, other: Network) -> None:
 
 
 def _shared_stage(network: Network) -> str:
-    """Give the stage that layers are in, if its work can be shared."""
+    """Give the stage that a network is in, if its work can be shared."""
     stage = STAGES[int(network.stage_index)]
     if stage not in SUMS:
         raise NeuronsError(

@@ -34,8 +34,8 @@ def _texels(names: tuple[str, ...]) -> UInt8[np.ndarray, " bytes"]:
 def scene(surfaces: Surfaces, floor: str | tuple[int, int, int], light: Light | None) -> Scene:
     """Lay out a room for the kernels; `floor` is the name of a material or a colour."""
     names = surfaces.materials
-    woven = mip_maps(names)
-    begins = woven.texels.shape[1] * np.arange(len(names))
+    mips = mip_maps(names)
+    begins = mips.texels.shape[1] * np.arange(len(names))
     faces = np.zeros(len(surfaces.height), FACE)
     faces["x0"], faces["y0"] = surfaces.start.T
     faces["x1"], faces["y1"] = surfaces.end.T
@@ -57,7 +57,7 @@ def scene(surfaces: Surfaces, floor: str | tuple[int, int, int], light: Light | 
     else:
         red, green, blue = (above * channel for channel in floor)
         start = -1
-    return Scene(faces, Ground(red, green, blue, start, above), _texels(names), woven.level_starts)
+    return Scene(faces, Ground(red, green, blue, start, above), _texels(names), mips.level_starts)
 
 
 def _brightness(light: Light | None, normals: Float[np.ndarray, "faces 3"]) -> Float[np.ndarray, " faces"]:

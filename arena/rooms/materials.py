@@ -211,8 +211,8 @@ def texture(name: str) -> Texture:
 @lru_cache(maxsize=ROOMS)
 def mip_maps(names: tuple[str, ...]) -> MipMaps:
     """Average the named materials for the ray caster."""
-    woven = [_mip_maps_of(name) for name in names]
-    return MipMaps(np.stack([texels for texels, _ in woven]), woven[0][1])
+    mips = [_mip_maps_of(name) for name in names]
+    return MipMaps(np.stack([texels for texels, _ in mips]), mips[0][1])
 
 
 @cache

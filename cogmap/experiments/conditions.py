@@ -58,7 +58,7 @@ class Conditions:
         views: int | None = None,
         fresh: bool = False,
     ) -> Recording:
-        """Walk through the room, by `motion` and `camera` where the setting has none of its own.
+        """Walk through the room, by `motion` and `camera` where the conditions have none of their own.
 
         A fresh walk is another, of `FRESH` views, or of as many as are learnt from when these are fewer. The
         walk is the same whatever the camera. From a library, it is taken once: who else wants it waits.

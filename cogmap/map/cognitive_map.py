@@ -137,7 +137,7 @@ class CognitiveMap:
     def partial_fit(self, views: Any, odours: ArrayLike, *, jump: bool = False) -> CognitiveMap:
         """Learn from the next views of a stream.
 
-        Time and memory per view do not depend on how many came before. See `neurons.network.Layers` for what
+        Time and memory per view do not depend on how many came before. See `neurons.network.Network` for what
         is learnt when.
 
         Parameters

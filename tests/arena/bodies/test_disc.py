@@ -4,6 +4,7 @@ import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import arena
 from arena.bodies.disc import Disc, Drive
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
@@ -275,3 +276,8 @@ def test_bad_commands_are_refused(command: tuple[float, float, float]) -> None:
 def test_bad_parameters_are_refused(name: str, value: float) -> None:
     with pytest.raises(ArenaError, match=name):
         Disc(**{name: value})
+
+
+def test_it_is_the_body_unless_told() -> None:
+    assert arena.Body is Disc
+    assert arena.Body(radius=0.1) == Disc(radius=0.1)
