@@ -144,9 +144,13 @@ def _blocks(cloud: Checked) -> list[Float[np.ndarray, "_ features"]]:
 
 
 def _by_descent(cloud: Checked, queries: Checked | None, neighbours: int) -> Nearest:
-    # Imported here because its kernels take seconds to load.
-    from pynndescent import NNDescent  # noqa: PLC0415
-
+    try:
+        from pynndescent import NNDescent  # noqa: PLC0415
+    except ImportError:
+        raise CogmapError(
+            f"the neighbours of {cloud.shape[0]} points are found by descent, which needs pynndescent; it is not "
+            "installed: run `pip install 'cogmap[large]'`, or give `exact` as many points and wait"
+        ) from None
     index = NNDescent(_as_matrix(cloud), n_neighbors=max(30, neighbours + 1), random_state=0)
     if queries is not None:
         return Nearest(*index.query(_as_matrix(queries), k=neighbours))
