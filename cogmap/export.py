@@ -23,8 +23,6 @@ RESOLUTION = 1e-6
 """Of spike times, s."""
 LONGEST = 2.0
 """How long a view lasts at most, in medians of the time between views: in the gaps of a path nobody looks."""
-_ROOM = "origin in the middle of the room, x to the right, y up"
-_COMPASS = "0 along x, counter-clockwise"
 
 
 def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int = 0) -> None:
@@ -134,7 +132,7 @@ def _lay_out(
         data=poses[:, :2],
         timestamps=recording.times,
         unit="meters",
-        reference_frame=_ROOM,
+        reference_frame="origin in the middle of the room, x to the right, y up",
     )
     heading = SpatialSeries(
         name="heading",
@@ -142,7 +140,7 @@ def _lay_out(
         data=poses[:, 2],
         timestamps=position,
         unit="radians",
-        reference_frame=_COMPASS,
+        reference_frame="0 along x, counter-clockwise",
     )
     behavior.add(Position(spatial_series=position))
     behavior.add(CompassDirection(spatial_series=heading))

@@ -17,8 +17,6 @@ from cogmap.graph.points import Checked, Cloud, checked_cloud
 
 ONE_SIDED = 5
 """Nearest views that a view is joined to even when it is not among theirs."""
-ABSENT = -9999
-"""What scipy's Dijkstra calls the predecessor of a point that has none."""
 
 
 class VisualRoadmap:
@@ -93,7 +91,8 @@ class VisualRoadmap:
             )
         before = dijkstra(self.graph, indices=[goal], return_predecessors=True)[1][0]
         route = [start]
-        while before[route[-1]] != ABSENT:
+        # So scipy's Dijkstra calls the predecessor of a point that has none.
+        while before[route[-1]] != -9999:
             route.append(int(before[route[-1]]))
         return np.array(route)
 

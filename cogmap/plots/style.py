@@ -18,7 +18,6 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
-DPI = 110
 SMALL, TINY = 9.0, 7.0
 """Sizes of text in points: labels and titles; ticks and what stands in a small panel."""
 INK = "#22252a"
@@ -83,7 +82,7 @@ def heading_bar(axes: Axes, *, pad: float = 0.02) -> None:
 
 def new_figure(width: float, height: float) -> Figure:
     """Make an empty white figure of this size in inches, laid out so that nothing overlaps."""
-    return Figure(figsize=(width, height), dpi=DPI, facecolor="white", layout="constrained")
+    return Figure(figsize=(width, height), dpi=110, facecolor="white", layout="constrained")
 
 
 def tidy(axes: Axes, *, x: str = "", y: str = "", title: str = "") -> None:

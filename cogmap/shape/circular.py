@@ -18,8 +18,6 @@ from cogmap.threads import one_thread
 
 PRIME = 47
 """Cocycles are found modulo this; residues up to half of it are taken for positive numbers."""
-NEAREST = 8
-"""Landmarks from which a point has its first phase."""
 
 
 class Loop(NamedTuple):
@@ -115,7 +113,8 @@ def _spread_out(
     paths: Float[np.ndarray, "landmarks points"], phases: Float[np.ndarray, "landmarks"]
 ) -> Float[np.ndarray, "points"]:
     """Give each point the mean direction of its nearest landmarks, weighted by closeness."""
-    count = min(NEAREST, len(paths))
+    # Landmarks from which a point has its first phase.
+    count = min(8, len(paths))
     near = np.argpartition(paths, count - 1, axis=0)[:count]
     length = np.take_along_axis(paths, near, 0)
     weight = 1 / (length + 1e-3 * length.max())

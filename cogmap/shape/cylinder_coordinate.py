@@ -11,12 +11,8 @@ from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import checked_graph
 from cogmap.threads import one_thread
 
-HARMONICS = 3
-"""Of the phase, which the loop's own shape is made of."""
 SLICE = 1 / 40
 """Share of the points that are compared with each other because their phases are close."""
-END = 0.08
-"""Share of a slice that is taken for either end of the cylinder."""
 
 
 def height_coordinate(
@@ -48,6 +44,8 @@ def height_coordinate(
     CogmapError
         When the arrays do not match, or fewer than 40 points have a phase.
     """
+    # Share of a slice that is taken for either end of the cylinder.
+    end = 0.08
     graph = checked_graph(graph)
     if not graph.shape[0] == len(embedding) == len(phase):
         raise CogmapError(
@@ -60,7 +58,7 @@ def height_coordinate(
     with one_thread():
         along = _left_over(embedding[points], phase[points])
         rank = _rank_in_slices(along, phase[points])
-        height = _between(graph[points][:, points], rank <= END, rank >= 1 - END)
+        height = _between(graph[points][:, points], rank <= end, rank >= 1 - end)
     everywhere = np.full(len(phase), np.nan)
     everywhere[points] = height
     return everywhere
@@ -70,7 +68,8 @@ def _left_over(
     embedding: Float[np.ndarray, "points components"], phase: Float[np.ndarray, "points"]
 ) -> Float[np.ndarray, "points"]:
     """Project what the phase does not explain of an embedding on its principal axis."""
-    turns = np.arange(1, HARMONICS + 1) * phase[:, None]
+    # Of the phase, which the loop's own shape is made of.
+    turns = np.arange(1, 3 + 1) * phase[:, None]
     waves = np.column_stack([np.ones(len(phase)), np.cos(turns), np.sin(turns)])
     rest = embedding - waves @ np.linalg.lstsq(waves, embedding, rcond=None)[0]
     along: np.ndarray = rest @ np.linalg.svd(rest.T @ rest)[0][:, 0]

@@ -16,8 +16,6 @@ ACTIVE = math.exp(-2)
 """Share of its peak at which a cell counts as active: within two standard deviations of a Gaussian field."""
 TOGETHER = 3
 """Views in which cells must be active together; one odd view joins nothing."""
-MODULUS = 11
-"""Of the coefficients, as in `rips_bars`."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +77,8 @@ def population_nerve(
         raise CogmapError(
             f"no cell is active in {together} views; give more views, or rates that are not all zero"
         )
-    complex_.compute_persistence(homology_coeff_field=MODULUS, persistence_dim_max=True)
+    # Of the coefficients, as in `rips_bars`.
+    complex_.compute_persistence(homology_coeff_field=11, persistence_dim_max=True)
     found = complex_.betti_numbers()[: max_dimension + 1]
     sizes = np.bincount(
         [len(simplex) - 1 for simplex, _ in complex_.get_simplices()], minlength=max_dimension + 2

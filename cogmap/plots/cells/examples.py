@@ -17,8 +17,6 @@ from cogmap.plots.style import ABSENT, CYCLIC, INK, QUARTERS, SMALL, SOFT, TINY,
 
 COUNT = 6
 """Cells of a population."""
-WIDTH = 1.7
-"""Of a cell, in inches."""
 THINNEST = 0.25
 """Height of a map over its width; that of a path is stretched to it."""
 
@@ -33,12 +31,14 @@ def plot_examples(populations: Mapping[str, Tuning]) -> Figure:
     CogmapError
         Without a population.
     """
+    # Of a cell, in inches.
+    width = 1.7
     if not populations:
         raise CogmapError("no populations to draw; give the maps and curves of at least one")
     edges = next(iter(populations.values())).maps.edges
     aspect = max(float(np.ptp(edges.y) / np.ptp(edges.x)), THINNEST)
-    height = WIDTH * (aspect + 0.45) + 0.5
-    figure = new_figure(COUNT * WIDTH + 0.7, height * len(populations))
+    height = width * (aspect + 0.45) + 0.5
+    figure = new_figure(COUNT * width + 0.7, height * len(populations))
     lines = figure.subfigures(len(populations), 1, squeeze=False, hspace=0.03)[:, 0]
     for line, (name, tuning) in zip(lines, populations.items(), strict=True):
         line.suptitle(name, fontsize=SMALL + 1, color=INK)

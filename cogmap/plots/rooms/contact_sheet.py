@@ -14,10 +14,6 @@ from cogmap.plots.style import INK, SMALL, new_figure
 from cogmap.shape.rips import euclidean, farthest_points
 
 VIEWS = 6
-CANDIDATES = 1000
-"""Free places among which those of the views are picked."""
-GOLDEN = np.pi * (3 - np.sqrt(5))
-"""Headings this far apart (rad) never repeat and soon point everywhere."""
 
 
 def plot_sheet(arena: Arena) -> Figure:
@@ -47,7 +43,9 @@ def plot_sheet(arena: Arena) -> Figure:
 
 
 def _spread(arena: Arena) -> Float[np.ndarray, "views 3"]:
-    xy = arena.sample_free(CANDIDATES, Disc().radius, np.random.default_rng(0))
+    # Free places among which those of the views are picked.
+    xy = arena.sample_free(1000, Disc().radius, np.random.default_rng(0))
     taken = farthest_points(euclidean(xy), VIEWS, 0).indices
-    headings = (GOLDEN * np.arange(len(taken)) + np.pi) % (2 * np.pi) - np.pi
+    # Headings a golden angle apart never repeat and soon point everywhere.
+    headings = (np.pi * (3 - np.sqrt(5)) * np.arange(len(taken)) + np.pi) % (2 * np.pi) - np.pi
     return np.column_stack([xy[taken], headings])

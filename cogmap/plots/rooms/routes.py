@@ -15,7 +15,6 @@ from cogmap.inputs import check_array
 from cogmap.plots.rooms.room import draw_surfaces
 from cogmap.plots.style import BAD, GOOD, INK, SMALL, new_figure, tidy_room
 
-COLUMNS = 3
 ARROW = 0.2
 """Length of the arrow that points where the body looks, m."""
 MINE, THEIRS, START, GOAL = "visual roadmap", "OMPL's PRM", "start", "goal"
@@ -45,7 +44,7 @@ def plot_routes(
         for path in (mine, theirs):
             if path is not None:
                 check_array("route", path, (None, 3))
-    columns = min(COLUMNS, max(1, len(routes)))
+    columns = min(3, max(1, len(routes)))
     rows = max(1, -(-len(routes) // columns))
     x0, y0, x1, y1 = arena.walkable.bounds
     width = 12.0 / columns

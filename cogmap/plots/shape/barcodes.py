@@ -15,9 +15,6 @@ from cogmap.shape.homology import Betti
 
 BARS = 12
 """The largest that are drawn."""
-TICKS = (1, 1.2, 1.5, 2, 3, 5, 10, 20, 50, 100)
-FINE_TICKS = (1, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2, 2.3)
-NAMES = {1: "loops", 2: "voids"}
 
 
 def plot_barcodes(results: Mapping[str, Betti]) -> Figure:
@@ -73,10 +70,16 @@ def _limit(results: Mapping[str, Betti], dimension: int) -> float:
 
 
 def _draw_bars(axes: Axes, result: Betti, dimension: int, limit: float) -> None:
+    fine_ticks = (1, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2, 2.3)
+    ticks = (1, 1.2, 1.5, 2, 3, 5, 10, 20, 50, 100)
     found, threshold = result.ratios[dimension], result.thresholds[dimension]
     shown = np.minimum(found[:BARS], limit)
     colours = [GOOD if rank < result.numbers[dimension] else SOFT for rank in range(len(shown))]
-    tidy(axes, x=f"π of H{dimension} ({NAMES[dimension]}), death / birth, no unit", y="bar, largest first")
+    tidy(
+        axes,
+        x=f"π of H{dimension} ({'loops' if dimension == 1 else 'voids'}), death / birth, no unit",
+        y="bar, largest first",
+    )
     axes.set_xscale("log")
     axes.barh(np.arange(len(shown)), shown - 1, left=1, height=0.7, color=colours)
     axes.axvline(threshold, color=BAD, linewidth=1.2, linestyle="--")
@@ -90,7 +93,7 @@ def _draw_bars(axes: Axes, result: Betti, dimension: int, limit: float) -> None:
         fontsize=TINY,
         color=BAD,
     )
-    axes.xaxis.set_major_locator(FixedLocator(FINE_TICKS if limit < 2.5 else TICKS))
+    axes.xaxis.set_major_locator(FixedLocator(fine_ticks if limit < 2.5 else ticks))
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set(xlim=(1, limit), ylim=(max(len(shown), 3) - 0.4, -1.6), yticks=[])

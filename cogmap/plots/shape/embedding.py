@@ -16,9 +16,6 @@ from cogmap.plots.style import INK, SMALL, TINY, colour_bar, direction_colours, 
 
 POINTS = 6000
 """More would hide each other."""
-SIZE = 3.0
-PADS = {2: 0.02, 3: 0.14}
-"""Room between axes and colour bar, as a share of the axes: a third axis has its label there."""
 
 
 def plot_embedding(
@@ -49,6 +46,8 @@ def plot_embedding(
     CogmapError
         For values that are not finite, shapes that do not fit, coordinates that do not exist.
     """
+    # Room between axes and colour bar, as a share of the axes: a third axis has its label there.
+    pads = {2: 0.02, 3: 0.14}
     check_array("embedding", embedding, (None, None))
     check_array("headings", headings, (len(embedding),))
     components = len(coordinates)
@@ -67,10 +66,10 @@ def plot_embedding(
     points = embedding[chosen][:, list(coordinates)].T
     names = [f"coordinate {item + 1} (no unit)" for item in coordinates]
     _draw(panels[0], points, names, direction_colours(headings[chosen]))
-    heading_bar(panels[0], pad=PADS[components])
+    heading_bar(panels[0], pad=pads[components])
     for axes, (name, values) in zip(panels[1:], others.items(), strict=True):
         drawn = _draw(axes, points, names, values[chosen])
-        colour_bar(axes, drawn, name, pad=PADS[components])
+        colour_bar(axes, drawn, name, pad=pads[components])
     figure.suptitle(f"{len(embedding):,} views on their manifold", fontsize=SMALL, color=INK)
     return figure
 
@@ -85,6 +84,6 @@ def _draw(axes: Any, points: np.ndarray, names: list[str], colours: np.ndarray) 
         axes.view_init(elev=28, azim=-60)
     else:
         axes.set_aspect("equal")
-    drawn: PathCollection = axes.scatter(*points, s=SIZE, c=colours, linewidths=0)
+    drawn: PathCollection = axes.scatter(*points, s=3.0, c=colours, linewidths=0)
     drawn.set_cmap("viridis")
     return drawn

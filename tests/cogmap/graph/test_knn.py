@@ -125,7 +125,7 @@ def test_descent_gives_the_same_twice() -> None:
 
 def test_large_clouds_need_their_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pynndescent", None)
-    with pytest.raises(CogmapError, match=r"neighbours of 20 points .* pip install 'cogmap\[large\]'"):
+    with pytest.raises(CogmapError, match=r"neighbours of 20 points .*pip install 'cogmap\[large\]'"):
         nearest_points(GOOD, 3, exact=19)
     nearest_points(GOOD, 3, exact=20)
 
