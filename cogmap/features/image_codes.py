@@ -26,8 +26,7 @@ def image_codes(views: Any) -> Float32[np.ndarray, "views features"]:
     CogmapError
         For views that are not uint8 images (views, height, width, 3).
     """
-    # Views read at a time.
-    block = 256
+    block = 256  # views read at a time
     check_views(views)
     codes = np.empty((views.shape[0], 3 * WIDTH * HEIGHT), np.float32)
     with one_thread():

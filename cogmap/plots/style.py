@@ -58,21 +58,21 @@ def _hues(count: int) -> Float[np.ndarray, "count 3"]:
     return colours
 
 
-CYCLIC = ListedColormap(cast("Sequence[tuple[float, float, float]]", _hues(360)), name="hues")
+HUES = ListedColormap(cast("Sequence[tuple[float, float, float]]", _hues(360)), name="hues")
 """For angles: equally light all around, and its end is its beginning."""
 
 
 def direction_colours(angles: Float[np.ndarray, " angles"]) -> Float[np.ndarray, "angles 4"]:
     """Give angles in rad their cyclic colours, grey where NaN; −π and π are the same."""
     turn = np.nan_to_num(angles / (2 * np.pi) + 0.5) % 1
-    colours: np.ndarray = CYCLIC(turn)
+    colours: np.ndarray = HUES(turn)
     colours[np.isnan(angles)] = (0.6, 0.6, 0.6, 1.0)
     return colours
 
 
 def direction_scale() -> ScalarMappable:
     """Make what a colour bar of directions in degrees shows."""
-    return ScalarMappable(Normalize(-180, 180), CYCLIC)
+    return ScalarMappable(Normalize(-180, 180), HUES)
 
 
 def heading_bar(axes: Axes, *, pad: float = 0.02) -> None:

@@ -162,7 +162,7 @@ def _second(table: pd.DataFrame, name: str, varied: Sequence[str]) -> str | None
 def _draw(axes: Axes, means: pd.DataFrame, axis: _Axis, *, line: str, label: str, mark: int) -> None:
     markers = "osD^vP"
     colour = colormaps["tab10"](mark) if label else GOOD
-    # Between the dots of two lines at the same category, of the way to the next.
+    # The dots of two lines at the same category stand a little apart.
     aside = 0.07 * mark if axis.is_category else 0.0
     axes.errorbar(
         [axis.place(value) + aside for value in means[axis.name]],

@@ -66,8 +66,7 @@ def threshold(
     crowd = min(max(points / landmarks, 1.0), float(CROWDS[-1]))
     grid = LANDMARKS[dimension]
     if not grid[0] <= landmarks <= grid[-1] or (metric == "geodesic" and neighbours < NEIGHBOURS):
-        # Most points per landmark in a simulation on demand: a little strict, but minutes instead of an
-        # hour.
+        # Of eight points per landmark thresholds are a little strict, but take minutes instead of an hour.
         crowd = min(crowd, 8)
         return _simulated(metric, dimension, round(crowd * landmarks), landmarks, min(neighbours, NEIGHBOURS))
     table = RegularGridInterpolator((np.log(grid), np.log(CROWDS)), _table()[metric][dimension])
@@ -131,13 +130,13 @@ def _worst_quantiles(
     metric: Metric, points: int, sizes: Sequence[tuple[int, int]], clouds: int, neighbours: int
 ) -> Float[np.ndarray, "sizes"]:
     worst = np.ones(len(sizes))
-    # Dimensions of the cubes; the null is whichever of them deceives most.
+    # The null is the cube whose dimension deceives most.
     for cube in (1, 2, 3, 4):
         rngs = (np.random.default_rng([cube, points, cloud]) for cloud in range(clouds))
         drawn = np.stack(
             [largest_ratios(metric, cube, points, sizes, rng=rng, neighbours=neighbours) for rng in rngs]
         )
-        # Quantile of the largest π that a bar must exceed; at 0.95 one disc in twenty has a loop.
+        # At the quantile 0.95 one disc in twenty would have a loop.
         worst = np.maximum(worst, np.quantile(drawn, 0.99, axis=0))
     return worst
 

@@ -113,7 +113,7 @@ def _spread_out(
     paths: Float[np.ndarray, "landmarks points"], phases: Float[np.ndarray, "landmarks"]
 ) -> Float[np.ndarray, "points"]:
     """Give each point the mean direction of its nearest landmarks, weighted by closeness."""
-    # Landmarks from which a point has its first phase.
+    # A point has its first phase from its eight nearest landmarks.
     count = min(8, len(paths))
     near = np.argpartition(paths, count - 1, axis=0)[:count]
     length = np.take_along_axis(paths, near, 0)

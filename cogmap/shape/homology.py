@@ -195,8 +195,7 @@ def _without_outliers(spread: Landmarks, limit: float) -> Float[np.ndarray, "kep
         (bars,) = rips_bars(distances, [0])
         closed = bars[ratios(bars) <= limit, 1].max(initial=0.0)
         _, piece = connected_components(distances <= closed, directed=False)
-        # What holds a smaller share of the points is not a piece of a Euclidean cloud but a handful of
-        # outliers.
+        # Less than 1 % of the points are not a piece of a Euclidean cloud but a handful of outliers.
         kept = np.bincount(piece, weights=share)[piece] >= 0.01
         if kept.all():
             return distances

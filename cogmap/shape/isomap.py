@@ -14,13 +14,10 @@ from sklearn.utils import Tags
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from cogmap.graph.knn import Metric, nearest_points
-from cogmap.graph.neighbour_graph import TINY, components, neighbour_graph, neighbourhood_means
+from cogmap.graph.neighbour_graph import SMALLEST, components, neighbour_graph, neighbourhood_means
 from cogmap.graph.points import Cloud
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
-
-BLOCK = 256
-"""Points placed at a time."""
 
 
 class Map(NamedTuple):
@@ -152,7 +149,8 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         with one_thread():
             for piece in np.unique(labels[near]):
                 chart, here = self.maps_[piece], np.flatnonzero(labels[:, 0] == piece)
-                for block in np.split(here, range(BLOCK, len(here), BLOCK)):
+                # All at once the paths would fill the memory.
+                for block in np.split(here, range(256, len(here), 256)):
                     paths = (chart.paths[:, position[block]] + lengths[block]).min(axis=2)
                     placed[block] = chart.place(paths)
         if self.averaging:
@@ -172,7 +170,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         values, vectors = eigh((centred + centred.T) / 2, subset_by_index=(count - kept, count - 1))
         values, vectors = values[::-1], vectors[:, ::-1]
         # Rounding leaves eigenvalues of 1e-16 where there is no dimension.
-        real = values > 1e-9 * max(values[0], TINY)
+        real = values > 1e-9 * max(values[0], SMALLEST)
         axes = np.zeros((self.components, count))
         axes[:kept][real] = (-0.5 * vectors[:, real] / np.sqrt(values[real])).T
         # Eigenvectors have no sign of their own.

@@ -14,8 +14,6 @@ from cogmap.inputs import check_samples, checked_count
 
 ACTIVE = math.exp(-2)
 """Share of its peak at which a cell counts as active: within two standard deviations of a Gaussian field."""
-TOGETHER = 3
-"""Views in which cells must be active together; one odd view joins nothing."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +31,7 @@ def population_nerve(
     *,
     max_dimension: int = 1,
     active: float = ACTIVE,
-    together: int = TOGETHER,
+    together: int = 3,
 ) -> Nerve:
     """Count the pieces, loops and voids of what a population covers, from who fires with whom alone.
 
@@ -51,7 +49,7 @@ def population_nerve(
     active
         Share of its own peak rate that a cell must reach, above 0 and at most 1.
     together
-        Fewest views.
+        Fewest views in which cells must be active together; of three, one odd view joins nothing.
 
     Raises
     ------
@@ -77,7 +75,7 @@ def population_nerve(
         raise CogmapError(
             f"no cell is active in {together} views; give more views, or rates that are not all zero"
         )
-    # Of the coefficients, as in `rips_bars`.
+    # Coefficients modulo 11, as in `rips_bars`.
     complex_.compute_persistence(homology_coeff_field=11, persistence_dim_max=True)
     found = complex_.betti_numbers()[: max_dimension + 1]
     sizes = np.bincount(

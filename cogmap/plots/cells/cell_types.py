@@ -34,8 +34,7 @@ def plot_cell_types(cells: pd.DataFrame) -> Figure:
         "place": ("in_field_direction_vector", "in-field direction vector"),
         "heading": ("mean_vector_length", "mean vector length"),
     }
-    # Side of a panel in inches.
-    panel = 2.4
+    panel = 2.4  # inches
     names = list(dict.fromkeys(cells["population"]))
     if not names:
         raise CogmapError("no cells to draw; give a table with at least one")

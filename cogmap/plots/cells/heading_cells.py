@@ -48,10 +48,8 @@ def plot_tuning_curves(
     CogmapError
         For a count below one, statistics of other cells.
     """
-    # Radii in an inch.
-    inch = 1.6
-    # From one circle to the next, in radii.
-    pitch = 2.75
+    # Lengths are in radii of a circle: those in an inch, and from one circle to the next.
+    inch, pitch = 1.6, 2.75
     if len(curves) != len(statistics):
         raise CogmapError(
             f"{len(curves)} curves and statistics of {len(statistics)} cells; take those of the same cells"

@@ -24,8 +24,7 @@ def plot_goals(arena: Arena, views: pd.DataFrame) -> Figure:
     views
         `x_m`, `y_m`, `heading_rad`, `orientation_rad` (turned into the true frame) and `ring`, a row a view.
     """
-    # Of a stroke, m.
-    length = 0.16
+    length = 0.16  # of a stroke, m
     figure = new_figure(11.0, 4.6)
     left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
     tidy_room(left, title=f"{views['ring'].nunique()} goals, {len(views):,} views at them")

@@ -19,9 +19,6 @@ from arena.smell.odour import FAINTEST
 from cogmap.inputs import check_array
 from cogmap.plots.style import INK, SMALL, SOFT, TINY, direction_colours, new_figure, tidy_room
 
-FIRST_VIEWS = 300
-"""How much of the path is drawn as a line: of all of it nothing could be seen."""
-
 
 def plot_room(arena: Arena, poses: Float[np.ndarray, "views 3"] | None = None) -> Figure:
     """Draw the arena from above: walls, solids, platform, odours, light, and where views were taken.
@@ -110,7 +107,7 @@ def _draw_solid(axes: Axes, solid: Solid) -> None:
         for side, name in zip(sides, solid.sides, strict=True):
             axes.plot(*side.T, color=_colour(name), linewidth=3, zorder=4.1)
             along = side[1] - side[0]
-            # Sides of a solid shorter than this (m) are not named.
+            # A shorter side has no room for a name.
             if np.hypot(*along) >= 0.5:
                 _name_side(axes, side, np.array([along[1], -along[0]]) / np.hypot(*along), name)
     width, depth = np.ptp(solid.outline, axis=0)
@@ -153,7 +150,7 @@ def _name_side(
 
 
 def _draw_light(axes: Axes, light: Light) -> None:
-    # Where the light is pointed out, right of the room.
+    # Right of the room.
     beside = (1.07, 0.8)
     across, up = (light.direction[:2] / np.hypot(*light.direction[:2])).tolist()
     axes.annotate(
@@ -189,7 +186,7 @@ def _draw_odours(axes: Axes, arena: Arena) -> None:
     # Where none arrives there is nothing to draw, and no way from the least to nothing.
     odours[odours <= FAINTEST * 1.01] = np.nan
     highest = int(np.floor(np.log2(np.nanmax(odours))))
-    # Seven contours per odour at most.
+    # At most seven contours an odour can be told apart.
     levels = 2.0 ** np.arange(highest - 7 + 1, highest + 1)
     hues = direction_colours(2 * np.pi * np.arange(len(arena.sources)) / len(arena.sources))
     for index, (source, hue) in enumerate(zip(arena.sources, hues, strict=True)):
@@ -213,5 +210,6 @@ def _draw_odours(axes: Axes, arena: Arena) -> None:
 def _draw_path(axes: Axes, poses: Float[np.ndarray, "views 3"]) -> None:
     x, y = poses[:, :2].T
     axes.scatter(x, y, s=3.5, color=SOFT, alpha=0.7, linewidths=0, zorder=1, label=f"{len(poses):,} views")
-    first = min(len(poses), FIRST_VIEWS)
+    # Of a line through all views nothing could be seen.
+    first = min(len(poses), 300)
     axes.plot(x[:first], y[:first], color=INK, linewidth=0.6, zorder=1.5, label=f"way of the first {first}")

@@ -15,7 +15,6 @@ from cogmap.shape.homology import Betti
 
 LOOPS, VOIDS = 6, 4
 """The largest that are drawn."""
-VOID = "#7b4fa3"
 
 
 def plot_barcode_grid(
@@ -86,7 +85,7 @@ def _draw(axes: Axes, result: Betti | None, expected: tuple[int, ...], limit: fl
     axes.xaxis.set_minor_locator(NullLocator())
     if result is None:
         return f"nothing, not {list(expected)}"
-    for dimension, first, count, colour in ((1, 0, LOOPS, GOOD), (2, LOOPS, VOIDS, VOID)):
+    for dimension, first, count, colour in ((1, 0, LOOPS, GOOD), (2, LOOPS, VOIDS, "#7b4fa3")):
         threshold, shown = result.thresholds[dimension], np.minimum(result.ratios[dimension][:count], limit)
         colours = [colour if rank < result.numbers[dimension] else SOFT for rank in range(len(shown))]
         axes.barh(first + np.arange(len(shown)), shown - 1, left=1, height=0.7, color=colours)

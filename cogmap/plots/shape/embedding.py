@@ -14,9 +14,6 @@ from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
 from cogmap.plots.style import INK, SMALL, TINY, colour_bar, direction_colours, heading_bar, new_figure, tidy
 
-POINTS = 6000
-"""More would hide each other."""
-
 
 def plot_embedding(
     embedding: Float[np.ndarray, "views components"],
@@ -24,11 +21,11 @@ def plot_embedding(
     others: Mapping[str, Float[np.ndarray, "views"]] | None = None,
     *,
     coordinates: Sequence[int] = (0, 1, 2),
+    most: int = 6000,
 ) -> Figure:
     """Draw two or three coordinates of the views, once coloured by heading and once by each of the others.
 
-    Coordinates have the unit of the metric that they were found in, no unit for words. At most 6,000 views
-    are drawn, evenly chosen.
+    Coordinates have the unit of the metric that they were found in, no unit for words.
 
     Parameters
     ----------
@@ -40,6 +37,8 @@ def plot_embedding(
         What else to colour by, under a name with its unit.
     coordinates
         Which two or three to draw.
+    most
+        Views that are drawn, evenly chosen; more than 6,000 would hide each other.
 
     Raises
     ------
@@ -58,7 +57,7 @@ def plot_embedding(
     others = others or {}
     for name, values in others.items():
         check_array(name, values, (len(embedding),))
-    chosen = np.linspace(0, len(embedding) - 1, min(len(embedding), POINTS)).astype(int)
+    chosen = np.linspace(0, len(embedding) - 1, min(len(embedding), most)).astype(int)
     figure = new_figure(5.2 * (1 + len(others)), 4.6)
     panels = figure.subplots(
         1, 1 + len(others), squeeze=False, subplot_kw={"projection": "3d"} if components == 3 else {}

@@ -35,7 +35,6 @@ def plot_confusion(rooms: Mapping[str, pd.DataFrame]) -> Figure:
         figure.subplots(1, len(rooms), squeeze=False)[0], rooms.items(), strict=True
     ):
         positions = views[["x_m", "y_m"]].to_numpy()
-        # Side of a bin, m.
         edges = bin_edges(positions, 0.25)
         ny, nx = edges.shape
         share = means_by_bin(edges.bin_of(positions), ny * nx, views[["confused"]].to_numpy(float))

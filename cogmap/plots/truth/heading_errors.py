@@ -93,7 +93,7 @@ def _draw_sizes(axes: Axes, size: Float[np.ndarray, " views"]) -> None:
 
 
 def _draw_room(axes: Axes, error: np.ndarray, positions: Float[np.ndarray, "views 2"]) -> None:
-    # Side in m of the bins that errors are averaged in: a few views each.
+    # Bins of 20 cm hold a few views each.
     edges = bin_edges(positions, 0.2)
     ny, nx = edges.shape
     parts = np.stack([error.real, error.imag], axis=1)

@@ -37,7 +37,7 @@ def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
         `x_m`, `y_m`, `heading_rad` and `distortion`, a row a view: 2 where geodesics are twice as long for
         the distance as they are on the whole.
     """
-    # Least extent along x and y (m) of places that are worth a map.
+    # Places are worth a map when they extend over half a metre along x and y.
     roomy = bool((places[["x_m", "y_m"]].max() - places[["x_m", "y_m"]].min() > 0.5).all())
     widths = [1.0, 0.9, 1.2] if roomy else [1.0, 0.9]
     figure = new_figure(5.0 * sum(widths), 4.2)
@@ -80,7 +80,7 @@ def _draw_room(axes: Axes, places: pd.DataFrame) -> None:
 
 
 def _draw_pairs(axes: Axes, motion: np.ndarray, geodesic: np.ndarray) -> None:
-    # Of motion distance, in each of which the median geodesic is taken.
+    # In each band of motion distance the median geodesic is taken.
     bands = 25
     tidy(
         axes,
