@@ -8,9 +8,11 @@ import pandas as pd
 
 
 def write_table(table: pd.DataFrame, path: Path) -> None:
-    """Write a table as Parquet or as CSV, whichever its path ends in."""
-    write = {".parquet": table.to_parquet, ".csv": table.to_csv}[path.suffix]
-    write(path, index=False)
+    """Write a table as CSV where its path ends so, or else as Parquet."""
+    if path.suffix == ".csv":
+        table.to_csv(path, index=False)
+    else:
+        table.to_parquet(path, index=False)
 
 
 def as_table(metrics: Mapping[str, Any]) -> str:

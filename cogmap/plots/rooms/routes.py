@@ -22,7 +22,7 @@ def plot_routes(
     arena: Arena,
     routes: list[tuple[Float[np.ndarray, "_ 3"], Float[np.ndarray, "_ 3"] | None]],
 ) -> Figure:
-    """Draw each route in the room: poses of the views on the way (arrows of 20 cm) and the peer's path (dashed).
+    """Draw each route in the room: poses of its views (arrows of 20 cm) and the peer's path (dashed).
 
     The shaded band is what the body sweeps; start is a circle, goal a square.
 

@@ -73,6 +73,7 @@ def test_shortcuts_become_long() -> None:
     assert same < 0.02 * graph.nnz
     assert (longer != longer.T).nnz == 0
     assert (lengthen_shortcuts(graph, 0) != graph).nnz == 0
+    assert (lengthen_shortcuts(graph, detour=1.0) != graph).nnz == 0
 
 
 def test_common_neighbours_are_counted_right() -> None:

@@ -40,6 +40,8 @@ def test_heading_weights_stand_over_headings() -> None:
 def test_few_or_silent_cells_are_drawn_too() -> None:
     figure = plot_afferents(np.zeros((40, 2)), np.zeros((40, 1)), PREFERRED)
     assert sum(bool(axes.collections) for axes in figure.axes[:10]) == 3
+    titles = [axes.get_title() for axes in plot_afferents(PLACE, HEADING, PREFERRED, count=2).axes[:2]]
+    assert titles == ["place cell 0", "place cell 10"]
 
 
 def test_what_does_not_fit_is_refused() -> None:

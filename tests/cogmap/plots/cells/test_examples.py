@@ -21,6 +21,7 @@ def test_firing_cells_are_drawn_map_above_curve(tuning: Tuning) -> None:
     maps, curves = (np.array(figure.axes).reshape(2, 2, 6)[0, row] for row in (0, 1))
     shown = [int(axes.get_title().split()[1].rstrip(":")) for axes in maps]
     assert len(set(shown)) == 6
+    assert len(plot_examples({"some": tuning}, count=3).axes) == 2 * 3
     assert 4 not in shown
     for axes, below, cell in zip(maps, curves, shown, strict=True):
         (mesh,) = axes.collections

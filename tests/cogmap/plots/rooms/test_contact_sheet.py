@@ -35,6 +35,7 @@ def test_places_are_far_from_each_other_and_headings_differ() -> None:
     found = poses([panel.get_title() for panel in plot_sheet(Arena.load("open_field")).axes[:6]])
     apart = np.linalg.norm(found[:, None, :2] - found[:, :2], axis=2) + 9 * np.eye(6)
     assert apart.min() > 1
+    assert len(plot_sheet(Arena.load("open_field"), views=2).axes) == 2 * 2
     turn = np.abs(np.angle(np.exp(1j * (found[:, None, 2] - found[:, 2])))) + 9 * np.eye(6)
     assert turn.min() > np.deg2rad(25)
 

@@ -46,6 +46,8 @@ def test_bars_are_the_largest_ratios_in_falling_order(annulus: Betti) -> None:
     loops, voids = plot_barcodes({"views": annulus}).axes
     np.testing.assert_allclose(lengths(loops), LOOPS[:12])
     np.testing.assert_allclose(lengths(voids), VOIDS)
+    fewer = plot_barcodes({"views": annulus}, bars=2).axes
+    assert [lengths(axes) for axes in fewer] == [lengths(loops)[:2], lengths(voids)[:2]]
     assert all(bar.get_x() == 1 for bar in loops.patches)
     rows = [bar.get_y() for bar in loops.patches]
     assert rows == sorted(rows)
