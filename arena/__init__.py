@@ -50,9 +50,8 @@ __all__ = [
     "gallery",
 ]
 
-with suppress(
-    ImportError
-):  # of the extra `gym`; its registry is read at run time only, there are no entry points
+# Of the extra `gym`. gymnasium 1 reads no entry points, so whoever imports the arena has the environment.
+with suppress(ImportError):
     import gymnasium
 
     gymnasium.register(

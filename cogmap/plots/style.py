@@ -113,10 +113,10 @@ def tidy_legend(
     axes: Axes, *, title: str = "", loc: Literal["best", "lower right", "beside"] = "best"
 ) -> None:
     """Explain the labelled artists, in small type; beside the axes nothing is covered."""
-    place: dict[str, Any] = {"loc": loc}
+    options: dict[str, Any] = {"loc": loc}
     if loc == "beside":
-        place = {"loc": "upper left", "bbox_to_anchor": (1.02, 1.0), "borderaxespad": 0.0}
-    legend = axes.legend(title=title, fontsize=TINY, title_fontsize=TINY, labelcolor=INK, **place)
+        options = {"loc": "upper left", "bbox_to_anchor": (1.02, 1.0), "borderaxespad": 0.0}
+    legend = axes.legend(title=title, fontsize=TINY, title_fontsize=TINY, labelcolor=INK, **options)
     legend.get_title().set_color(INK)
     legend.get_frame().set(facecolor="white", edgecolor="none", alpha=0.85)
 

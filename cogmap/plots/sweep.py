@@ -45,7 +45,7 @@ class _Axis(NamedTuple):
     is_category: bool
     is_log: bool
 
-    def place(self, value: Any) -> float:
+    def at(self, value: Any) -> float:
         return float(self.levels.index(value)) if self.is_category else float(value)
 
 
@@ -165,7 +165,7 @@ def _draw(axes: Axes, means: pd.DataFrame, axis: _Axis, *, line: str, label: str
     # The dots of two lines at the same category stand a little apart.
     aside = 0.07 * mark if axis.is_category else 0.0
     axes.errorbar(
-        [axis.place(value) + aside for value in means[axis.name]],
+        [axis.at(value) + aside for value in means[axis.name]],
         means["mean"],
         means["half"].fillna(0.0),
         fmt=markers[mark % len(markers)],
@@ -181,8 +181,8 @@ def _draw(axes: Axes, means: pd.DataFrame, axis: _Axis, *, line: str, label: str
 
 def _draw_doubted(axes: Axes, table: pd.DataFrame, statistic: str, axis: _Axis) -> None:
     doubted = table[~_is_sound(table) & table[statistic].notna()]
-    places = [axis.place(value) for value in doubted[axis.name]]
-    axes.plot(places, doubted[statistic].astype(float), "x", color=BAD, markersize=4)
+    xs = [axis.at(value) for value in doubted[axis.name]]
+    axes.plot(xs, doubted[statistic].astype(float), "x", color=BAD, markersize=4)
 
 
 def _scale(axes: Axes, axis: _Axis) -> None:

@@ -99,13 +99,13 @@ def _smooth_cocycle(
     distances: Float[np.ndarray, "landmarks landmarks"], scale: float, cocycle: Int[np.ndarray, "edges 3"]
 ) -> Float[np.ndarray, "landmarks"]:
     """Give landmarks the phases whose steps over the edges shorter than `scale` are least in its class."""
-    whole = np.zeros(distances.shape)
+    integers = np.zeros(distances.shape)
     start, end, residue = cocycle.T
-    whole[start, end] = np.where(residue > PRIME // 2, residue - PRIME, residue)
-    whole -= whole.T
+    integers[start, end] = np.where(residue > PRIME // 2, residue - PRIME, residue)
+    integers -= integers.T
     starts, ends = np.nonzero(np.triu(distances <= scale, 1))
     difference = _differences(starts, ends, len(distances))
-    solution: np.ndarray = lsqr(difference, -whole[starts, ends], atol=1e-10, btol=1e-10)[0]
+    solution: np.ndarray = lsqr(difference, -integers[starts, ends], atol=1e-10, btol=1e-10)[0]
     return 2 * np.pi * solution
 
 
