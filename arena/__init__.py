@@ -1,6 +1,6 @@
 """The world and the body in it: what an animal can see, smell and bump into."""
 
-import gymnasium
+from contextlib import suppress
 
 from arena.bodies.disc import Disc
 from arena.errors import ArenaError
@@ -50,4 +50,10 @@ __all__ = [
     "gallery",
 ]
 
-gymnasium.register(id="arena/Explorer-v0", entry_point="arena.environment:Explorer", max_episode_steps=2000)
+# Of the extra `gym`. gymnasium 1 reads no entry points, so whoever imports the arena has the environment.
+with suppress(ImportError):
+    import gymnasium
+
+    gymnasium.register(
+        id="arena/Explorer-v0", entry_point="arena.environment:Explorer", max_episode_steps=2000
+    )

@@ -17,21 +17,15 @@ from cogmap.errors import CogmapError
 from cogmap.inputs import checked_count
 from cogmap.map.cognitive_map import CognitiveMap
 
-START = datetime(2000, 1, 1, tzinfo=UTC)
-"""When a simulated session begins: the format asks for a date, and there is none."""
 RESOLUTION = 1e-6
 """Of spike times, s."""
-LONGEST = 2.0
-"""How long a view lasts at most, in medians of the time between views: in the gaps of a path nobody looks."""
-_ROOM = "origin in the middle of the room, x to the right, y up"
-_COMPASS = "0 along x, counter-clockwise"
 
 
 def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int = 0) -> None:
     """Write where the body was, how fast every cell fired and when it spiked, as a new NWB file.
 
     The cells look at the views. In each view a cell spikes n ~ Poisson(λ T) times, spread evenly over how
-    long the view lasts, T, which is until the next.
+    long the view lasts, T, which is until the next, or twice the median of that where this is shorter.
 
     Parameters
     ----------
@@ -81,7 +75,8 @@ def _durations(times: Float[np.ndarray, " views"]) -> Float[np.ndarray, " views"
         )
     steps = np.diff(times)
     usual = float(np.median(steps))
-    lasting: np.ndarray = np.minimum(np.append(steps, usual), LONGEST * usual)
+    # In the gaps of a path nobody looks.
+    lasting: np.ndarray = np.minimum(np.append(steps, usual), 2 * usual)
     return lasting
 
 
@@ -114,7 +109,8 @@ def _lay_out(
     file = NWBFile(
         session_description="Simulated: a body explores a room and its cells look. The date is nominal.",
         identifier=hashlib.sha256(b"".join(part.tobytes() for part in (poses, *rates.values()))).hexdigest(),
-        session_start_time=START,
+        # The format asks for a date, and a simulation has none.
+        session_start_time=datetime(2000, 1, 1, tzinfo=UTC),
         experiment_description="Place cells and head-direction cells that emerged from sight and smell.",
         keywords=["place cells", "head-direction cells", "simulation"],
         experimenter="cogmap, simulation",
@@ -134,7 +130,7 @@ def _lay_out(
         data=poses[:, :2],
         timestamps=recording.times,
         unit="meters",
-        reference_frame=_ROOM,
+        reference_frame="origin in the middle of the room, x to the right, y up",
     )
     heading = SpatialSeries(
         name="heading",
@@ -142,7 +138,7 @@ def _lay_out(
         data=poses[:, 2],
         timestamps=position,
         unit="radians",
-        reference_frame=_COMPASS,
+        reference_frame="0 along x, counter-clockwise",
     )
     behavior.add(Position(spatial_series=position))
     behavior.add(CompassDirection(spatial_series=heading))

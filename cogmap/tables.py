@@ -1,11 +1,18 @@
-"""Results as a table that reads well in a terminal."""
+"""Tables of results: as Parquet and CSV on disk, and as lines that read well in a terminal."""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-UNITS = {"_m": "m", "_deg": "°", "_bytes": "bytes"}
+
+def write_table(table: pd.DataFrame, path: Path) -> None:
+    """Write a table as CSV where its path ends so, or else as Parquet."""
+    if path.suffix == ".csv":
+        table.to_csv(path, index=False)
+    else:
+        table.to_parquet(path, index=False)
 
 
 def as_table(metrics: Mapping[str, Any]) -> str:
@@ -40,4 +47,5 @@ def flat(record: Mapping[str, Any], *, lists: bool = False) -> dict[str, Any]:
 def _unit(name: str) -> str:
     if "seconds" in name:
         return "s"
-    return next((unit for ending, unit in UNITS.items() if name.endswith(ending)), "")
+    units = {"_m": "m", "_deg": "°", "_bytes": "bytes"}
+    return next((unit for ending, unit in units.items() if name.endswith(ending)), "")

@@ -11,6 +11,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from cogmap.atomic import METRICS
+from cogmap.tables import write_table
 
 
 @dataclass(frozen=True)
@@ -24,9 +25,10 @@ class Result:
     figures: dict[str, Figure] = field(default_factory=dict)
 
     def write(self, folder: Path) -> None:
-        """Write `metrics.json`, a Parquet file per table and a PNG per figure into a folder that exists."""
+        """Write `metrics.json`, tables as Parquet and CSV, and figures as PNG into a folder that exists."""
         for name, table in self.tables.items():
-            table.to_parquet(folder / f"{name}.parquet", index=False)
+            for ending in ("parquet", "csv"):
+                write_table(table, folder / f"{name}.{ending}")
         for name, figure in self.figures.items():
             figure.savefig(folder / f"{name}.png")
         (folder / METRICS).write_text(json.dumps(self.metrics, indent=2) + "\n", encoding="utf-8")

@@ -13,17 +13,10 @@ from cogmap.features.strips import FREQUENCIES, Strips
 
 COLUMNS = 2 * (FREQUENCIES - 1)
 """At which a panorama is compared with another."""
-FINEST = 15
-"""Turns per circle beyond which detail is not trusted to tell the turn at first."""
-BLUR = 0.1
-"""Standard deviation of the blur within which flow is linear, rad."""
-WINDOW = 0.16
-"""Standard deviation of the window within which flow is one number, rad."""
 BLOCK = 2048
 """Pairs compared at a time."""
 OUTLIER = 0.03
 """Error of a turn (rad) from which on it counts less."""
-ROUNDS = 4
 
 _f = np.arange(FREQUENCIES, dtype=np.float32)
 
@@ -60,10 +53,12 @@ def _turns(
     first: Complex64[np.ndarray, "pairs rows frequencies"],
     second: Complex64[np.ndarray, "pairs rows frequencies"],
 ) -> Float[np.ndarray, "pairs"]:
-    sharp = (_f * np.exp(-np.square(_f / FINEST))) ** 2
+    # Detail beyond 15 periods around the circle is not trusted to tell the turn at first.
+    sharp = (_f * np.exp(-np.square(_f / 15))) ** 2
     likeness = fft.irfft((first * second.conj()).sum(axis=1) * sharp, 2 * COLUMNS, axis=1)
     coarse = likeness.argmax(axis=1).astype(np.float32) * np.float32(np.pi / COLUMNS)
-    low = np.exp(-0.5 * np.square(BLUR * _f))
+    # Within a blur of 0.1 rad (standard deviation) flow is linear.
+    low = np.exp(-0.5 * np.square(0.1 * _f))
     first = first * low
     second = second * np.exp(-1j * coarse[:, None, None] * _f) * low
     change = fft.irfft(second - first, COLUMNS, axis=2)
@@ -80,7 +75,8 @@ def _turns(
 
 
 def _windowed(values: Float32[np.ndarray, "pairs columns"]) -> Float32[np.ndarray, "pairs columns"]:
-    spectrum = fft.rfft(values, axis=1) * np.exp(-0.5 * np.square(WINDOW * _f))
+    # Within a window of 0.16 rad (standard deviation) flow is one number.
+    spectrum = fft.rfft(values, axis=1) * np.exp(-0.5 * np.square(0.16 * _f))
     return np.asarray(fft.irfft(spectrum, COLUMNS, axis=1))
 
 
@@ -125,7 +121,7 @@ def synchronise_headings(
     signs = np.repeat([1.0, -1.0], len(edges))
     difference = sp.csr_array((signs, (np.tile(index, 2), edges.T.ravel())), (len(edges), views))
     trust = 1 / np.square(lengths + 0.1 * np.median(lengths))
-    for _ in range(ROUNDS):
+    for _ in range(4):
         left = _wrapped(turned - difference @ headings)
         weighted = difference.T @ sp.diags_array(trust / (1 + np.square(left / OUTLIER)))
         matrix = sp.csr_array(weighted @ difference)

@@ -8,9 +8,6 @@ import cv2
 import numpy as np
 from jaxtyping import Float32, Int, UInt8
 
-PATCH = 32
-"""Side of a patch, pixels; patches overlap by half."""
-
 
 class Descriptors(NamedTuple):
     """Spots of several images, image after image."""
@@ -52,6 +49,7 @@ def patches(images: UInt8[np.ndarray, "images height width 3"]) -> Descriptors:
 
 
 def _cells(image: UInt8[np.ndarray, "height width 3"]) -> Float32[np.ndarray, "rows columns 3"]:
-    rows, columns = (max(2, round(2 * size / PATCH)) for size in image.shape[:2])
+    # A patch of 32 pixels is four cells; patches overlap by half.
+    rows, columns = (max(2, round(2 * size / 32)) for size in image.shape[:2])
     mean = cv2.resize(image, (columns, rows), interpolation=cv2.INTER_AREA)
     return np.asarray(cv2.cvtColor(mean.astype(np.float32) / 255, cv2.COLOR_RGB2LAB))

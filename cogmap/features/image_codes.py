@@ -13,8 +13,6 @@ from cogmap.threads import one_thread
 
 WIDTH, HEIGHT = 20, 15
 """Pixels of a code."""
-BLOCK = 256
-"""Views read at a time."""
 
 
 def image_codes(views: Any) -> Float32[np.ndarray, "views features"]:
@@ -28,11 +26,12 @@ def image_codes(views: Any) -> Float32[np.ndarray, "views features"]:
     CogmapError
         For views that are not uint8 images (views, height, width, 3).
     """
+    block = 256  # views read at a time
     check_views(views)
     codes = np.empty((views.shape[0], 3 * WIDTH * HEIGHT), np.float32)
     with one_thread():
-        for first in range(0, len(codes), BLOCK):
-            for row, view in enumerate(np.asarray(views[first : first + BLOCK]), start=first):
+        for first in range(0, len(codes), block):
+            for row, view in enumerate(np.asarray(views[first : first + block]), start=first):
                 codes[row] = _code(view)
     return codes
 

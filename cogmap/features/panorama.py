@@ -19,11 +19,6 @@ from cogmap.graph.neighbour_graph import neighbour_graph
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
 
-SAMPLE = 4000
-"""Views from which principal components are taken."""
-NEAREST = 5
-"""Known views from which the heading of another is told."""
-
 
 class PanoramaCode(TransformerMixin, BaseEstimator):
     r"""Place and heading of panoramic views, from these views alone.
@@ -75,7 +70,8 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         components = min(checked_count("components", self.components), count)
         neighbours = min(checked_count("neighbours", self.neighbours), count - 1)
         with one_thread():
-            sample = self._train.turn_invariant[:: -(-count // SAMPLE)]
+            # 4,000 views are enough for principal components.
+            sample = self._train.turn_invariant[:: -(-count // 4000)]
             components = min(components, *sample.shape)
             self._axes = PCA(components, svd_solver="covariance_eigh").fit(sample)
             found = self._axes.transform(self._train.turn_invariant).astype(np.float64)
@@ -90,7 +86,8 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         test = strips(X)
         with one_thread():
             places = self._scale * self._axes.transform(test.turn_invariant).astype(np.float64)
-            nearest = nearest_points(self._places, min(NEAREST, len(self._places)), queries=places).indices
+            # The five nearest known views tell the heading of another.
+            nearest = nearest_points(self._places, min(5, len(self._places)), queries=places).indices
             pairs = np.column_stack([np.repeat(np.arange(len(places)), nearest.shape[1]), nearest.ravel()])
             label = self.headings_[pairs[:, 1]] + turns(test, pairs, self._train)
         headings = np.angle(np.exp(1j * label).reshape(nearest.shape).sum(axis=1))

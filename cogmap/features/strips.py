@@ -13,8 +13,6 @@ from cogmap.inputs import check_views
 
 FREQUENCIES = 31
 """Kept: of constant to 30 periods around the circle."""
-ROWS = 10
-"""Kept at most; neighbouring rows are averaged."""
 BLOCK = 512
 """Views read at a time."""
 
@@ -40,7 +38,8 @@ def strips(views: Any) -> Strips:
     count, height, width, _ = views.shape
     if width < 2 * FREQUENCIES:
         raise CogmapError(f"panoramas are {width} columns wide; give at least {2 * FREQUENCIES}")
-    edges = np.unique(np.linspace(0, height, min(ROWS, height) + 1).astype(int))
+    # Ten rows are kept at most; neighbouring rows are averaged.
+    edges = np.unique(np.linspace(0, height, min(10, height) + 1).astype(int))
     grey = np.empty((count, len(edges) - 1, FREQUENCIES), np.complex64)
     turn_invariant = np.empty((count, 3 * (len(edges) - 1) * FREQUENCIES), np.float32)
     share = np.diff(edges).astype(np.float32)[:, None, None]

@@ -8,8 +8,6 @@ from jaxtyping import Float32, Int
 
 EXAMPLES = 25_000
 """Most descriptors that are clustered."""
-ROUNDS = 10
-"""Of k-means; more hardly change how well words tell places."""
 CHUNK = 2048
 """Descriptors compared with all words at a time; the products stay in the cache."""
 
@@ -31,7 +29,8 @@ def learn_words(
     if len(distinct) <= count:
         return distinct
     cv2.setRNGSeed(int(np.random.SeedSequence(seed).generate_state(1)[0] >> 1))
-    stop = (cv2.TERM_CRITERIA_MAX_ITER, ROUNDS, 0.0)
+    # More than ten rounds of k-means hardly change how well words tell places.
+    stop = (cv2.TERM_CRITERIA_MAX_ITER, 10, 0.0)
     labels = np.empty((len(examples), 1), np.int32)
     return np.asarray(cv2.kmeans(examples, count, labels, stop, 1, cv2.KMEANS_PP_CENTERS)[2])
 

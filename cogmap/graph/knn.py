@@ -27,12 +27,8 @@ Metric = Literal["euclidean", "cosine"]
     square, it obeys the triangle inequality. The origin has no direction and is near to nothing.
 """
 
-EXACT = 50_000
-"""Points up to which neighbours are exact; beyond, descent is several times faster."""
 BLOCK = 2048
 """Points compared at a time: 16 MB for every thread."""
-RIGHT_ANGLE = np.sqrt(2) * (1 - 1e-6)
-"""Chord below which directions have a positive cosine beyond rounding."""
 
 
 class Nearest(NamedTuple):
@@ -50,7 +46,7 @@ def nearest_points(
     *,
     queries: Cloud | None = None,
     metric: Metric = "euclidean",
-    exact: int = EXACT,
+    exact: int = 50_000,
 ) -> Nearest:
     """Find the nearest points of a cloud for each query, or for each of its own points among the others.
 
@@ -68,8 +64,8 @@ def nearest_points(
     metric
         "euclidean" or "cosine".
     exact
-        Points of the largest cloud that is searched exactly; larger ones are searched by descent, which
-        misses some neighbours in a thousand.
+        Points of the largest cloud that is searched exactly; larger ones are searched by descent
+        (pynndescent), which is several times faster and misses some neighbours in a thousand.
 
     Raises
     ------
@@ -102,6 +98,8 @@ def nearest_points(
 
 
 def _by_direction(cloud: Checked, queries: Checked | None, neighbours: int, exact: int) -> Nearest:
+    # Chord below which directions have a positive cosine beyond rounding.
+    right_angle = np.sqrt(2) * (1 - 1e-6)
     cloud, queries = normalize(cloud), None if queries is None else normalize(queries)
     if cloud.shape[0] <= exact:
         return _by_products(cloud, queries, neighbours)
@@ -110,8 +108,8 @@ def _by_direction(cloud: Checked, queries: Checked | None, neighbours: int, exac
     found = _by_descent(cloud[pointing], None if queries is None else queries[asking], neighbours)
     indices = np.full((test.shape[0], neighbours), -1)
     distances = np.full(indices.shape, np.inf)
-    indices[asking] = np.where(found.distances < RIGHT_ANGLE, pointing[found.indices], -1)
-    distances[asking] = np.where(found.distances < RIGHT_ANGLE, found.distances, np.inf)
+    indices[asking] = np.where(found.distances < right_angle, pointing[found.indices], -1)
+    distances[asking] = np.where(found.distances < right_angle, found.distances, np.inf)
     return Nearest(indices, distances)
 
 
@@ -144,9 +142,13 @@ def _blocks(cloud: Checked) -> list[Float[np.ndarray, "_ features"]]:
 
 
 def _by_descent(cloud: Checked, queries: Checked | None, neighbours: int) -> Nearest:
-    # Imported here because its kernels take seconds to load.
-    from pynndescent import NNDescent  # noqa: PLC0415
-
+    try:
+        from pynndescent import NNDescent  # noqa: PLC0415
+    except ImportError:
+        raise CogmapError(
+            f"the neighbours of {cloud.shape[0]} points are found by descent, which needs pynndescent; it is "
+            "not installed: run `pip install 'cogmap[large]'`, or give `exact` as many points and wait"
+        ) from None
     index = NNDescent(_as_matrix(cloud), n_neighbors=max(30, neighbours + 1), random_state=0)
     if queries is not None:
         return Nearest(*index.query(_as_matrix(queries), k=neighbours))

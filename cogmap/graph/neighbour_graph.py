@@ -13,11 +13,8 @@ from cogmap.errors import CogmapError
 from cogmap.graph.knn import Metric, nearest_points
 from cogmap.graph.points import Cloud, checked_cloud, distinct
 
-TINY = float(np.finfo(np.float64).tiny)
+SMALLEST = float(np.finfo(np.float64).tiny)
 """Length of an edge between equal points: adds nothing to a path, yet is an edge, where a zero is none."""
-
-DETOUR = 5.0
-"""How many times its length a shortcut counts: enough to go round it wherever there is a way round."""
 
 
 class Components(NamedTuple):
@@ -40,7 +37,7 @@ def neighbour_graph(
 
     An edge runs both ways when either end counts the other among its nearest (`nearest.nearest`: exact up to
     50,000 points). Repeated points count once: the nearest *other* points are sought among the distinct ones,
-    and each repeat hangs on the first of its kind by an edge of length `TINY`. Nothing else is joined: a
+    and each repeat hangs on the first of its kind by an edge of length `SMALLEST`. Nothing else is joined: a
     cloud in pieces stays in pieces, and a point that is near to nothing stays alone.
 
     Parameters
@@ -81,7 +78,7 @@ def neighbour_graph(
     rows = np.concatenate([np.repeat(first, found.sum(axis=1)), repeats])
     columns = np.concatenate([first[ends[found]], first[same.ravel()[repeats]]])
     # Distinct points can be nearer than rounding tells; the edge must survive that.
-    values = np.concatenate([np.maximum(lengths[found], TINY), np.full(len(repeats), TINY)])
+    values = np.concatenate([np.maximum(lengths[found], SMALLEST), np.full(len(repeats), SMALLEST)])
     graph = sp.csr_array((values.astype(np.float64), (rows, columns)), shape=(X.shape[0], X.shape[0]))
     return sp.csr_array(graph.maximum(graph.T))
 
@@ -93,8 +90,8 @@ def _mutual(ends: Int[np.ndarray, "points neighbours"]) -> Bool[np.ndarray, "poi
     return np.isin(ends * len(ends) + points, counted)
 
 
-def lengthen_shortcuts(graph: sp.csr_array, shared: int = 3) -> sp.csr_array:
-    """Make edges whose ends have fewer than `shared` neighbours in common `DETOUR` times as long.
+def lengthen_shortcuts(graph: sp.csr_array, shared: int = 3, *, detour: float = 5.0) -> sp.csr_array:
+    """Make edges whose ends have fewer than `shared` neighbours in common `detour` times as long.
 
     Two steps on one sheet of a manifold share most of their surroundings; an edge that jumps from one sheet
     to another shares hardly any, makes false loops and closes true ones. No edge is lost, for such an edge
@@ -106,6 +103,8 @@ def lengthen_shortcuts(graph: sp.csr_array, shared: int = 3) -> sp.csr_array:
         Symmetric lengths, as from `neighbour_graph`.
     shared
         A fifth of the neighbours of a point suits clouds from curves to solids; 0 changes nothing.
+    detour
+        How many times its length a shortcut counts: 5 is enough to go round it wherever there is a way round.
 
     References
     ----------
@@ -115,7 +114,7 @@ def lengthen_shortcuts(graph: sp.csr_array, shared: int = 3) -> sp.csr_array:
     # One more than the common neighbours, so that none at all is still an entry beside every edge.
     common = sp.csr_array((joined @ joined).multiply(joined) + joined).sorted_indices()
     longer = graph.sorted_indices()
-    longer.data[common.data <= shared] *= DETOUR
+    longer.data[common.data <= shared] *= detour
     return longer
 
 

@@ -10,11 +10,9 @@ from cogmap.navigation.roadmap import VisualRoadmap
 
 __all__ = ["Localiser", "Location", "PanoramaCode", "VisualRoadmap", "image_codes"]
 
-_TOLD_POSES = ("Deviation", "path_deviation")
-
 
 def __getattr__(name: str) -> Any:
     """Find under their old names what is told poses, and has moved to `cogmap.evaluation`."""
-    if name in _TOLD_POSES:
+    if name in ("Deviation", "path_deviation"):
         return getattr(import_module("cogmap.evaluation.deviation"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

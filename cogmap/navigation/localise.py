@@ -14,9 +14,6 @@ from cogmap.graph.points import Cloud, checked_cloud
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
 
-BLOCK = 128
-"""Queries placed at a time."""
-
 
 class Location(NamedTuple):
     """Remembered views near to each query, and how much of each makes up the query."""
@@ -94,8 +91,8 @@ class Localiser:
         indices = nearest_points(self.features, count, queries=query, metric=self.metric).indices
         weights = np.empty(indices.shape)
         with one_thread():
-            for first in range(0, len(indices), BLOCK):
-                block = slice(first, first + BLOCK)
+            for first in range(0, len(indices), 128):
+                block = slice(first, first + 128)
                 weights[block] = self._weigh(train, indices[block], test[block])
         return Location(indices, weights)
 

@@ -15,11 +15,6 @@ from cogmap.graph.knn import Metric
 from cogmap.graph.neighbour_graph import Components, components, neighbour_graph
 from cogmap.graph.points import Checked, Cloud, checked_cloud
 
-ONE_SIDED = 5
-"""Nearest views that a view is joined to even when it is not among theirs."""
-ABSENT = -9999
-"""What scipy's Dijkstra calls the predecessor of a point that has none."""
-
 
 class VisualRoadmap:
     r"""Plans routes as sequences of remembered views: shortest paths in their neighbour graph.
@@ -38,12 +33,13 @@ class VisualRoadmap:
     features
         Of the remembered views, (views, features), dense or sparse: `PanoramaCode`, `BagOfWords`.
     neighbours
-        How many nearest views each is joined to, where these count it among theirs; to its five nearest in
-        any case.
+        How many nearest views each is joined to, where these count it among theirs.
     power
         p.
     metric
         Of the features; "cosine" for bags of words.
+    one_sided
+        Nearest views that each is joined to in any case.
 
     Raises
     ------
@@ -63,11 +59,13 @@ class VisualRoadmap:
         neighbours: int = 45,
         power: float = 1.25,
         metric: Metric = "euclidean",
+        one_sided: int = 5,
     ) -> None:
         self.features = features
         self.neighbours = neighbours
         self.power = power
         self.metric = metric
+        self.one_sided = one_sided
 
     def plan(self, view_a: Cloud, view_b: Cloud) -> Int[np.ndarray, "steps"]:
         """Give the indices of the views on the way from view a to view b, given by their features.
@@ -93,7 +91,8 @@ class VisualRoadmap:
             )
         before = dijkstra(self.graph, indices=[goal], return_predecessors=True)[1][0]
         route = [start]
-        while before[route[-1]] != ABSENT:
+        # So scipy's Dijkstra calls the predecessor of a point that has none.
+        while before[route[-1]] != -9999:
             route.append(int(before[route[-1]]))
         return np.array(route)
 
@@ -113,7 +112,7 @@ class VisualRoadmap:
         """Symmetric costs between neighbours."""
         if self.features.shape[0] == 1:
             return sp.csr_array((1, 1))
-        graph = neighbour_graph(self.features, self.neighbours, metric=self.metric, one_sided=ONE_SIDED)
+        graph = neighbour_graph(self.features, self.neighbours, metric=self.metric, one_sided=self.one_sided)
         graph.data **= self.power
         return graph
 

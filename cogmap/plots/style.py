@@ -18,7 +18,6 @@ from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
-DPI = 110
 SMALL, TINY = 9.0, 7.0
 """Sizes of text in points: labels and titles; ticks and what stands in a small panel."""
 INK = "#22252a"
@@ -59,21 +58,21 @@ def _hues(count: int) -> Float[np.ndarray, "count 3"]:
     return colours
 
 
-CYCLIC = ListedColormap(cast("Sequence[tuple[float, float, float]]", _hues(360)), name="hues")
+HUES = ListedColormap(cast("Sequence[tuple[float, float, float]]", _hues(360)), name="hues")
 """For angles: equally light all around, and its end is its beginning."""
 
 
 def direction_colours(angles: Float[np.ndarray, " angles"]) -> Float[np.ndarray, "angles 4"]:
     """Give angles in rad their cyclic colours, grey where NaN; −π and π are the same."""
     turn = np.nan_to_num(angles / (2 * np.pi) + 0.5) % 1
-    colours: np.ndarray = CYCLIC(turn)
+    colours: np.ndarray = HUES(turn)
     colours[np.isnan(angles)] = (0.6, 0.6, 0.6, 1.0)
     return colours
 
 
 def direction_scale() -> ScalarMappable:
     """Make what a colour bar of directions in degrees shows."""
-    return ScalarMappable(Normalize(-180, 180), CYCLIC)
+    return ScalarMappable(Normalize(-180, 180), HUES)
 
 
 def heading_bar(axes: Axes, *, pad: float = 0.02) -> None:
@@ -83,7 +82,7 @@ def heading_bar(axes: Axes, *, pad: float = 0.02) -> None:
 
 def new_figure(width: float, height: float) -> Figure:
     """Make an empty white figure of this size in inches, laid out so that nothing overlaps."""
-    return Figure(figsize=(width, height), dpi=DPI, facecolor="white", layout="constrained")
+    return Figure(figsize=(width, height), dpi=110, facecolor="white", layout="constrained")
 
 
 def tidy(axes: Axes, *, x: str = "", y: str = "", title: str = "") -> None:
@@ -114,10 +113,10 @@ def tidy_legend(
     axes: Axes, *, title: str = "", loc: Literal["best", "lower right", "beside"] = "best"
 ) -> None:
     """Explain the labelled artists, in small type; beside the axes nothing is covered."""
-    place: dict[str, Any] = {"loc": loc}
+    options: dict[str, Any] = {"loc": loc}
     if loc == "beside":
-        place = {"loc": "upper left", "bbox_to_anchor": (1.02, 1.0), "borderaxespad": 0.0}
-    legend = axes.legend(title=title, fontsize=TINY, title_fontsize=TINY, labelcolor=INK, **place)
+        options = {"loc": "upper left", "bbox_to_anchor": (1.02, 1.0), "borderaxespad": 0.0}
+    legend = axes.legend(title=title, fontsize=TINY, title_fontsize=TINY, labelcolor=INK, **options)
     legend.get_title().set_color(INK)
     legend.get_frame().set(facecolor="white", edgecolor="none", alpha=0.85)
 

@@ -17,13 +17,8 @@ from scipy.stats import t
 
 from cogmap.plots.style import BAD, GOOD, INK, SMALL, TINY, new_figure, tidy, tidy_legend
 
-CONFIDENCE = 0.95
 MOST_LINES = 6
 """A second parameter with at most so many values gives each a line of its own."""
-_MARKERS = "osD^vP"
-_COLUMNS = 3
-_ASIDE = 0.07
-"""Between the dots of two lines at the same category, of the way to the next."""
 _UNITS = {
     "_m": "m",
     "_m2": "m²",
@@ -50,7 +45,7 @@ class _Axis(NamedTuple):
     is_category: bool
     is_log: bool
 
-    def place(self, value: Any) -> float:
+    def at(self, value: Any) -> float:
         return float(self.levels.index(value)) if self.is_category else float(value)
 
 
@@ -81,7 +76,7 @@ def summarise(table: pd.DataFrame, statistic: str, by: Sequence[str]) -> pd.Data
     each = sound.assign(_=sound[statistic].astype(float)).groupby([*by, "seed"], sort=True)["_"].mean()
     groups = each.groupby(level=list(range(len(by))))
     count = groups.count()
-    factor = t.ppf((1 + CONFIDENCE) / 2, np.maximum(count - 1, 1))
+    factor = t.ppf((1 + 0.95) / 2, np.maximum(count - 1, 1))
     half = groups.std() / np.sqrt(count) * factor
     return pd.DataFrame({"mean": groups.mean(), "half": half, "seeds": count}).reset_index()
 
@@ -116,7 +111,7 @@ def plot_trend(
         Whether values stand on a grid, and lines join them; else every point of a sample stands alone.
     """
     called = labels or {}
-    columns = min(_COLUMNS, len(varied))
+    columns = min(3, len(varied))
     rows = math.ceil(len(varied) / columns)
     figure = new_figure(4.0 * columns, 3.1 * rows)
     panels = figure.subplots(rows, columns, squeeze=False, sharey=True)
@@ -165,13 +160,15 @@ def _second(table: pd.DataFrame, name: str, varied: Sequence[str]) -> str | None
 
 
 def _draw(axes: Axes, means: pd.DataFrame, axis: _Axis, *, line: str, label: str, mark: int) -> None:
+    markers = "osD^vP"
     colour = colormaps["tab10"](mark) if label else GOOD
-    aside = _ASIDE * mark if axis.is_category else 0.0
+    # The dots of two lines at the same category stand a little apart.
+    aside = 0.07 * mark if axis.is_category else 0.0
     axes.errorbar(
-        [axis.place(value) + aside for value in means[axis.name]],
+        [axis.at(value) + aside for value in means[axis.name]],
         means["mean"],
         means["half"].fillna(0.0),
-        fmt=_MARKERS[mark % len(_MARKERS)],
+        fmt=markers[mark % len(markers)],
         linestyle="none" if axis.is_category else line,
         color=colour,
         markersize=4,
@@ -184,8 +181,8 @@ def _draw(axes: Axes, means: pd.DataFrame, axis: _Axis, *, line: str, label: str
 
 def _draw_doubted(axes: Axes, table: pd.DataFrame, statistic: str, axis: _Axis) -> None:
     doubted = table[~_is_sound(table) & table[statistic].notna()]
-    places = [axis.place(value) for value in doubted[axis.name]]
-    axes.plot(places, doubted[statistic].astype(float), "x", color=BAD, markersize=4)
+    xs = [axis.at(value) for value in doubted[axis.name]]
+    axes.plot(xs, doubted[statistic].astype(float), "x", color=BAD, markersize=4)
 
 
 def _scale(axes: Axes, axis: _Axis) -> None:

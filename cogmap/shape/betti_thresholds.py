@@ -23,15 +23,9 @@ from cogmap.shape.rips import euclidean, farthest_points, geodesic, ratios, rips
 Metric = Literal["geodesic", "euclidean"]
 
 TABLE = "betti_thresholds.json"
-CUBES = (1, 2, 3, 4)
-"""Dimensions of the cubes; the null is whichever of them deceives most."""
-LEVEL = 0.99
-"""Quantile of the largest π that a bar must exceed; at 0.95 one disc in twenty has a loop."""
 LANDMARKS = {0: (25, 50, 100, 200, 400), 1: (25, 50, 100, 200, 400), 2: (25, 50, 100, 200)}
 CROWDS = (1, 2, 4, 8, 16, 32)
 """Points per landmark; beyond the last the thresholds hardly fall."""
-CROWD_ON_DEMAND = 8
-"""Most points per landmark in a simulation on demand: a little strict, but minutes instead of an hour."""
 NEIGHBOURS = 15
 CLOUDS = 100
 
@@ -72,7 +66,8 @@ def threshold(
     crowd = min(max(points / landmarks, 1.0), float(CROWDS[-1]))
     grid = LANDMARKS[dimension]
     if not grid[0] <= landmarks <= grid[-1] or (metric == "geodesic" and neighbours < NEIGHBOURS):
-        crowd = min(crowd, CROWD_ON_DEMAND)
+        # Of eight points per landmark thresholds are a little strict, but take minutes instead of an hour.
+        crowd = min(crowd, 8)
         return _simulated(metric, dimension, round(crowd * landmarks), landmarks, min(neighbours, NEIGHBOURS))
     table = RegularGridInterpolator((np.log(grid), np.log(CROWDS)), _table()[metric][dimension])
     return float(table((np.log(landmarks), np.log(crowd))))
@@ -135,12 +130,14 @@ def _worst_quantiles(
     metric: Metric, points: int, sizes: Sequence[tuple[int, int]], clouds: int, neighbours: int
 ) -> Float[np.ndarray, "sizes"]:
     worst = np.ones(len(sizes))
-    for cube in CUBES:
+    # The null is the cube whose dimension deceives most.
+    for cube in (1, 2, 3, 4):
         rngs = (np.random.default_rng([cube, points, cloud]) for cloud in range(clouds))
         drawn = np.stack(
             [largest_ratios(metric, cube, points, sizes, rng=rng, neighbours=neighbours) for rng in rngs]
         )
-        worst = np.maximum(worst, np.quantile(drawn, LEVEL, axis=0))
+        # At the quantile 0.95 one disc in twenty would have a loop.
+        worst = np.maximum(worst, np.quantile(drawn, 0.99, axis=0))
     return worst
 
 

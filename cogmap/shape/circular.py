@@ -18,8 +18,6 @@ from cogmap.threads import one_thread
 
 PRIME = 47
 """Cocycles are found modulo this; residues up to half of it are taken for positive numbers."""
-NEAREST = 8
-"""Landmarks from which a point has its first phase."""
 
 
 class Loop(NamedTuple):
@@ -101,13 +99,13 @@ def _smooth_cocycle(
     distances: Float[np.ndarray, "landmarks landmarks"], scale: float, cocycle: Int[np.ndarray, "edges 3"]
 ) -> Float[np.ndarray, "landmarks"]:
     """Give landmarks the phases whose steps over the edges shorter than `scale` are least in its class."""
-    whole = np.zeros(distances.shape)
+    integers = np.zeros(distances.shape)
     start, end, residue = cocycle.T
-    whole[start, end] = np.where(residue > PRIME // 2, residue - PRIME, residue)
-    whole -= whole.T
+    integers[start, end] = np.where(residue > PRIME // 2, residue - PRIME, residue)
+    integers -= integers.T
     starts, ends = np.nonzero(np.triu(distances <= scale, 1))
     difference = _differences(starts, ends, len(distances))
-    solution: np.ndarray = lsqr(difference, -whole[starts, ends], atol=1e-10, btol=1e-10)[0]
+    solution: np.ndarray = lsqr(difference, -integers[starts, ends], atol=1e-10, btol=1e-10)[0]
     return 2 * np.pi * solution
 
 
@@ -115,7 +113,8 @@ def _spread_out(
     paths: Float[np.ndarray, "landmarks points"], phases: Float[np.ndarray, "landmarks"]
 ) -> Float[np.ndarray, "points"]:
     """Give each point the mean direction of its nearest landmarks, weighted by closeness."""
-    count = min(NEAREST, len(paths))
+    # A point has its first phase from its eight nearest landmarks.
+    count = min(8, len(paths))
     near = np.argpartition(paths, count - 1, axis=0)[:count]
     length = np.take_along_axis(paths, near, 0)
     weight = 1 / (length + 1e-3 * length.max())

@@ -11,23 +11,19 @@ from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import checked_graph
 from cogmap.threads import one_thread
 
-HARMONICS = 3
-"""Of the phase, which the loop's own shape is made of."""
-SLICE = 1 / 40
-"""Share of the points that are compared with each other because their phases are close."""
-END = 0.08
-"""Share of a slice that is taken for either end of the cylinder."""
-
 
 def height_coordinate(
     graph: sp.csr_array,
     embedding: Float[np.ndarray, "points components"],
     phase: Float[np.ndarray, "points"],
+    *,
+    similar: float = 1 / 40,
+    end: float = 0.08,
 ) -> Float[np.ndarray, "points"]:
     r"""Measure how far each point of a cylinder is from its two ends: 0 at one, 1 at the other.
 
     What the harmonics of the phase do not explain of an embedding varies mostly along the cylinder. Ranked
-    along it among the points of nearly the same phase, the first and last 8 % are the ends. Between them the
+    along it among the points of nearly the same phase, the first and last few are the ends. Between them the
     height is the function that changes least over the edges of the graph,
 
     .. math:: \min_h \sum_{ij} (h_j - h_i)^2.
@@ -42,11 +38,15 @@ def height_coordinate(
         Coordinates, as from `LandmarkIsomap`.
     phase
         rad, as from `circular_coordinate`; points where it is NaN get no height.
+    similar
+        Share of the points that are compared with each other because their phases are close.
+    end
+        Share of these that is taken for either end of the cylinder.
 
     Raises
     ------
     CogmapError
-        When the arrays do not match, or fewer than 40 points have a phase.
+        When the arrays do not match, or too few points have a phase: fewer than 1 / `similar`.
     """
     graph = checked_graph(graph)
     if not graph.shape[0] == len(embedding) == len(phase):
@@ -55,12 +55,14 @@ def height_coordinate(
             f"{len(phase)} phases; give one row a point"
         )
     points = np.flatnonzero(np.isfinite(phase))
-    if len(points) < 1 / SLICE:
-        raise CogmapError(f"{len(points)} points have a phase; a cylinder takes at least {round(1 / SLICE)}")
+    if len(points) < 1 / similar:
+        raise CogmapError(
+            f"{len(points)} points have a phase; a cylinder takes at least {round(1 / similar)}"
+        )
     with one_thread():
         along = _left_over(embedding[points], phase[points])
-        rank = _rank_in_slices(along, phase[points])
-        height = _between(graph[points][:, points], rank <= END, rank >= 1 - END)
+        rank = _rank_in_slices(along, phase[points], similar)
+        height = _between(graph[points][:, points], rank <= end, rank >= 1 - end)
     everywhere = np.full(len(phase), np.nan)
     everywhere[points] = height
     return everywhere
@@ -70,7 +72,8 @@ def _left_over(
     embedding: Float[np.ndarray, "points components"], phase: Float[np.ndarray, "points"]
 ) -> Float[np.ndarray, "points"]:
     """Project what the phase does not explain of an embedding on its principal axis."""
-    turns = np.arange(1, HARMONICS + 1) * phase[:, None]
+    # The loop's own shape is made of the first three harmonics of the phase.
+    turns = np.arange(1, 4) * phase[:, None]
     waves = np.column_stack([np.ones(len(phase)), np.cos(turns), np.sin(turns)])
     rest = embedding - waves @ np.linalg.lstsq(waves, embedding, rcond=None)[0]
     along: np.ndarray = rest @ np.linalg.svd(rest.T @ rest)[0][:, 0]
@@ -78,11 +81,11 @@ def _left_over(
 
 
 def _rank_in_slices(
-    values: Float[np.ndarray, "points"], phase: Float[np.ndarray, "points"]
+    values: Float[np.ndarray, "points"], phase: Float[np.ndarray, "points"], similar: float
 ) -> Float[np.ndarray, "points"]:
     """Give the share of points with nearly the same phase that have a smaller value."""
     order = np.argsort(phase, kind="stable")
-    half = max(10, round(SLICE * len(values) / 2))
+    half = max(10, round(similar * len(values) / 2))
     ring = values[order[(np.arange(len(values))[:, None] + np.arange(-half, half + 1)) % len(values)]]
     rank = np.empty(len(values))
     rank[order] = (ring < ring[:, half : half + 1]).mean(axis=1)

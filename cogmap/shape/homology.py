@@ -32,8 +32,6 @@ Metric = Literal["geodesic", "euclidean", "precomputed"]
 
 FEWEST = 10
 """Fewer points than this have no shape to speak of."""
-OUTLIERS = 0.01
-"""What holds a smaller share of the points is not a piece of a Euclidean cloud but a handful of outliers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,7 +195,8 @@ def _without_outliers(spread: Landmarks, limit: float) -> Float[np.ndarray, "kep
         (bars,) = rips_bars(distances, [0])
         closed = bars[ratios(bars) <= limit, 1].max(initial=0.0)
         _, piece = connected_components(distances <= closed, directed=False)
-        kept = np.bincount(piece, weights=share)[piece] >= OUTLIERS
+        # Less than 1 % of the points are not a piece of a Euclidean cloud but a handful of outliers.
+        kept = np.bincount(piece, weights=share)[piece] >= 0.01
         if kept.all():
             return distances
         # Without its outliers the typical gap is smaller, which can reveal more of them.

@@ -14,16 +14,13 @@ from sklearn.utils import Tags
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from cogmap.graph.knn import Metric, nearest_points
-from cogmap.graph.neighbour_graph import TINY, components, neighbour_graph, neighbourhood_means
+from cogmap.graph.neighbour_graph import SMALLEST, components, neighbour_graph, neighbourhood_means
 from cogmap.graph.points import Cloud
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
 
-BLOCK = 256
-"""Points placed at a time."""
 
-
-class Map(NamedTuple):
+class PieceMap(NamedTuple):
     """How distances to the landmarks of one connected piece become coordinates."""
 
     points: Int[np.ndarray, "points"]
@@ -35,7 +32,9 @@ class Map(NamedTuple):
     axes: Float[np.ndarray, "components landmarks"]
     """−½ λ^−½ v, and 0 where the piece has no more dimensions."""
 
-    def place(self, paths: Float[np.ndarray, "landmarks places"]) -> Float[np.ndarray, "places components"]:
+    def coordinates(
+        self, paths: Float[np.ndarray, "landmarks places"]
+    ) -> Float[np.ndarray, "places components"]:
         """Give the coordinates of what is so far from the landmarks."""
         placed: np.ndarray = (self.axes @ (paths**2 - self.mean[:, None])).T
         return placed
@@ -77,7 +76,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         Their neighbour graph.
     pieces_ : Components
         The connected pieces of the graph, the largest first.
-    maps_ : tuple of Map
+    maps_ : tuple of PieceMap
         One a piece.
 
     Raises
@@ -125,7 +124,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
                 points = np.flatnonzero(self.pieces_.labels == piece)
                 self._position[points] = np.arange(len(points))
                 maps.append(self._scale(points, rng))
-                self._single[points] = maps[-1].place(maps[-1].paths)
+                self._single[points] = maps[-1].coordinates(maps[-1].paths)
         self.maps_ = tuple(maps)
         self.embedding_ = self._single
         if self.averaging:
@@ -152,15 +151,16 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         with one_thread():
             for piece in np.unique(labels[near]):
                 chart, here = self.maps_[piece], np.flatnonzero(labels[:, 0] == piece)
-                for block in np.split(here, range(BLOCK, len(here), BLOCK)):
+                # All at once the paths would fill the memory.
+                for block in np.split(here, range(256, len(here), 256)):
                     paths = (chart.paths[:, position[block]] + lengths[block]).min(axis=2)
-                    placed[block] = chart.place(paths)
+                    placed[block] = chart.coordinates(paths)
         if self.averaging:
             known = np.where(near[:, :, None], self._single[ends], 0).sum(axis=1)
             placed = (placed + known) / (1 + near.sum(axis=1, keepdims=True))
         return placed
 
-    def _scale(self, points: Int[np.ndarray, "points"], rng: np.random.Generator) -> Map:
+    def _scale(self, points: Int[np.ndarray, "points"], rng: np.random.Generator) -> PieceMap:
         """Classical scaling of one piece."""
         count = min(self.landmarks, len(points))
         landmarks = np.sort(rng.choice(len(points), count, replace=False))
@@ -172,12 +172,12 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         values, vectors = eigh((centred + centred.T) / 2, subset_by_index=(count - kept, count - 1))
         values, vectors = values[::-1], vectors[:, ::-1]
         # Rounding leaves eigenvalues of 1e-16 where there is no dimension.
-        real = values > 1e-9 * max(values[0], TINY)
+        real = values > 1e-9 * max(values[0], SMALLEST)
         axes = np.zeros((self.components, count))
         axes[:kept][real] = (-0.5 * vectors[:, real] / np.sqrt(values[real])).T
         # Eigenvectors have no sign of their own.
         axes *= np.sign(axes[np.arange(self.components), np.abs(axes).argmax(axis=1)] + 0.0)[:, None]
-        return Map(points, paths, mean, axes)
+        return PieceMap(points, paths, mean, axes)
 
     def _checked(self, X: Any, *, reset: bool) -> Cloud:
         checked = validate_data(

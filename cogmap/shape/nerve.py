@@ -14,10 +14,6 @@ from cogmap.inputs import check_samples, checked_count
 
 ACTIVE = math.exp(-2)
 """Share of its peak at which a cell counts as active: within two standard deviations of a Gaussian field."""
-TOGETHER = 3
-"""Views in which cells must be active together; one odd view joins nothing."""
-MODULUS = 11
-"""Of the coefficients, as in `rips_bars`."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +31,7 @@ def population_nerve(
     *,
     max_dimension: int = 1,
     active: float = ACTIVE,
-    together: int = TOGETHER,
+    together: int = 3,
 ) -> Nerve:
     """Count the pieces, loops and voids of what a population covers, from who fires with whom alone.
 
@@ -53,7 +49,7 @@ def population_nerve(
     active
         Share of its own peak rate that a cell must reach, above 0 and at most 1.
     together
-        Fewest views.
+        Fewest views in which cells must be active together; of three, one odd view joins nothing.
 
     Raises
     ------
@@ -79,7 +75,8 @@ def population_nerve(
         raise CogmapError(
             f"no cell is active in {together} views; give more views, or rates that are not all zero"
         )
-    complex_.compute_persistence(homology_coeff_field=MODULUS, persistence_dim_max=True)
+    # Coefficients modulo 11, as in `rips_bars`.
+    complex_.compute_persistence(homology_coeff_field=11, persistence_dim_max=True)
     found = complex_.betti_numbers()[: max_dimension + 1]
     sizes = np.bincount(
         [len(simplex) - 1 for simplex, _ in complex_.get_simplices()], minlength=max_dimension + 2

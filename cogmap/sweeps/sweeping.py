@@ -18,6 +18,7 @@ from cogmap.sweeps.plan import Plan
 from cogmap.sweeps.points import Point, points_of
 from cogmap.sweeps.running import Task, on_cluster, on_this_machine
 from cogmap.sweeps.table import table_of
+from cogmap.tables import write_table
 
 PLAN = "plan.toml"
 """The plan, in the folder of its sweep."""
@@ -103,10 +104,9 @@ def _finished(ledger: Ledger, point: Point) -> Record:
 
 def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
     """Write the table and its figures, and how to do it again."""
-    with ledger.replacing(ledger.folder / "table.csv") as fresh:
-        table.to_csv(fresh, index=False)
-    with ledger.replacing(ledger.folder / "table.parquet") as fresh:
-        table.to_parquet(fresh, index=False)
+    for name in ("table.csv", "table.parquet"):
+        with ledger.replacing(ledger.folder / name) as fresh:
+            write_table(table, fresh)
     figures, fresh = ledger.folder / "figures", ledger.work / "figures"
     with disk_errors(ledger.folder):
         shutil.rmtree(fresh, ignore_errors=True)

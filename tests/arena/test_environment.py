@@ -71,6 +71,11 @@ def test_made_by_name_it_is_truncated() -> None:
     assert gymnasium.spec("arena/Explorer-v0").max_episode_steps == 2000
 
 
+def test_arena_is_imported_where_gymnasium_is_missing() -> None:
+    script = "import sys; sys.modules['gymnasium'] = None; import arena; arena.Arena.load('open_field')"
+    subprocess.run([sys.executable, "-c", script], check=True, cwd=ROOT)
+
+
 def test_importing_the_arena_does_not_import_the_environment() -> None:
     script = "import sys, arena; sys.exit('arena.environment' in sys.modules or 'cv2' in sys.modules)"
     subprocess.run([sys.executable, "-c", script], check=True, cwd=ROOT)

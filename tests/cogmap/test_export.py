@@ -1,5 +1,6 @@
 import sys
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from arena import Recording
 from cogmap import CogmapError, CognitiveMap
-from cogmap.export import LONGEST, RESOLUTION, START, export_nwb
+from cogmap.export import RESOLUTION, export_nwb
 
 pytestmark = [
     pytest.mark.filterwarnings("ignore::DeprecationWarning:(hdmf|pynwb|pynapple|nwbinspector).*"),
@@ -56,13 +57,13 @@ def test_cells_spike_as_often_as_their_rates_say(out: Path, short: Recording, cm
     activity = cmap.perceive(short.views)
     steps = np.append(np.diff(short.times), np.nan)
     usual = np.nanmedian(steps)
-    lasting = np.where(np.isnan(steps), usual, np.minimum(steps, LONGEST * usual))
+    lasting = np.where(np.isnan(steps), usual, np.minimum(steps, 2 * usual))
     expected = lasting @ np.hstack([activity.place, activity.heading]).astype(float)
     counts = np.array([len(units[cell]) for cell in units])
     assert np.square(counts - expected).sum() / expected.sum() == pytest.approx(1, abs=0.3)
     times = np.concatenate([units[cell].times() for cell in units])
     within = times - short.times[np.searchsorted(short.times, times + 2 * RESOLUTION) - 1]
-    assert within.max() <= LONGEST * usual + RESOLUTION
+    assert within.max() <= 2 * usual + RESOLUTION
     assert not ((times > short.times[399] + 2 * usual + RESOLUTION) & (times < short.times[400])).any()
     assert times.max() <= short.times[-1] + usual
     share = within / lasting[np.searchsorted(short.times, times + 2 * RESOLUTION) - 1]
@@ -89,7 +90,7 @@ def test_the_seed_draws_the_spikes(short: Recording, cmap: CognitiveMap, out: Pa
         export_nwb(short, cmap, tmp_path / f"{seed}.nwb", seed=seed)
         with pynwb.NWBHDF5IO(tmp_path / f"{seed}.nwb", "r") as disk:
             file = disk.read()
-            assert file.session_start_time == START
+            assert file.session_start_time == datetime(2000, 1, 1, tzinfo=UTC)
             assert file.units.resolution == RESOLUTION
             trains[seed] = np.asarray(file.units["spike_times"].target.data[:])
     with pynwb.NWBHDF5IO(out, "r") as disk:

@@ -1,4 +1,17 @@
-from cogmap.tables import as_table
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from cogmap.tables import as_table, write_table
+
+
+@pytest.mark.parametrize(("ending", "read"), [("parquet", pd.read_parquet), ("csv", pd.read_csv)])
+def test_a_table_is_read_back_as_it_was_written(tmp_path: Path, ending: str, read: object) -> None:
+    table = pd.DataFrame({"view": [3, 5], "error_m": [0.1, 1 / 3]}, index=[7, 8])
+    write_table(table, tmp_path / f"errors.{ending}")
+    assert callable(read)
+    pd.testing.assert_frame_equal(read(tmp_path / f"errors.{ending}"), table.reset_index(drop=True))
 
 
 def test_every_figure_has_a_line_with_its_unit() -> None:

@@ -20,16 +20,15 @@ from cogmap.plots.style import (
     tidy_room,
 )
 
-COUNT = 5
-"""Cells of each population."""
-
 
 def plot_afferents(
     place: Float[np.ndarray, "charts place_cells"],
     heading: Float[np.ndarray, "charts heading_cells"],
     preferred: Float[np.ndarray, "charts 3"],
+    *,
+    count: int = 5,
 ) -> Figure:
-    """Draw the weights of five place cells and five head-direction cells, a dot per chart.
+    """Draw the weights of a few place cells and head-direction cells, a dot per chart.
 
     Above, charts lie where their preferred view was taken and are coloured by their weight to a place cell,
     the strongest on top. Below, their weight to a heading cell stands over the heading of that view.
@@ -40,6 +39,8 @@ def plot_afferents(
         Weights, Hz.
     preferred
         Pose of the view that each chart prefers: m, m, rad.
+    count
+        Cells of each population, evenly chosen.
 
     Raises
     ------
@@ -50,15 +51,15 @@ def plot_afferents(
     check_array("place", place, (len(preferred), None))
     check_array("heading", heading, (len(preferred), None))
     figure = new_figure(13.0, 5.2)
-    above, below = figure.subplots(2, COUNT)
+    above, below = figure.subplots(2, count)
     strongest = max(float(place.max()), 1e-9)
-    for axes, cell in zip(above, _chosen(place), strict=False):
+    for axes, cell in zip(above, _chosen(place, count), strict=False):
         order = np.argsort(place[:, cell])
         tidy_room(axes, title=f"place cell {cell}")
         x, y = preferred[order, :2].T
         axes.scatter(x, y, s=5, c=place[order, cell], cmap=COLOURS, vmin=0, vmax=strongest, linewidths=0)
     colour_bar(above[-1], ScalarMappable(Normalize(0, strongest), COLOURS), "weight (Hz)")
-    for axes, cell in zip(below, _chosen(heading), strict=False):
+    for axes, cell in zip(below, _chosen(heading, count), strict=False):
         tidy(axes, x="heading of the chart's view (°)", y="weight (Hz)", title=f"head-direction cell {cell}")
         angles = preferred[:, 2]
         axes.scatter(np.rad2deg(angles), heading[:, cell], s=4, c=direction_colours(angles), linewidths=0)
@@ -67,7 +68,7 @@ def plot_afferents(
     return figure
 
 
-def _chosen(weights: Float[np.ndarray, "charts cells"]) -> Int[np.ndarray, "chosen"]:
+def _chosen(weights: Float[np.ndarray, "charts cells"], count: int) -> Int[np.ndarray, "chosen"]:
     """Take cells evenly."""
     cells = weights.shape[1]
-    return np.unique((np.arange(COUNT) + 0.5).astype(int) * cells // COUNT)
+    return np.unique((np.arange(count) + 0.5).astype(int) * cells // count)

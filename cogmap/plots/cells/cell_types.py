@@ -11,13 +11,6 @@ from cogmap.cells.measures.place import LEAST_INFORMATION, MOST_DIRECTION
 from cogmap.errors import CogmapError
 from cogmap.plots.style import ABSENT, BAD, GOOD, INK, SMALL, SOFT, new_figure, tidy
 
-PANEL = 2.4
-"""Side of a panel in inches."""
-KINDS = {
-    "place": ("in_field_direction_vector", "in-field direction vector"),
-    "heading": ("mean_vector_length", "mean vector length"),
-}
-
 
 def plot_cell_types(cells: pd.DataFrame) -> Figure:
     """Draw every cell by how much it tells of place and of direction, one column of panels a population.
@@ -37,14 +30,19 @@ def plot_cell_types(cells: pd.DataFrame) -> Figure:
     CogmapError
         Without a cell.
     """
+    kinds = {
+        "place": ("in_field_direction_vector", "in-field direction vector"),
+        "heading": ("mean_vector_length", "mean vector length"),
+    }
+    panel = 2.4  # inches
     names = list(dict.fromkeys(cells["population"]))
     if not names:
         raise CogmapError("no cells to draw; give a table with at least one")
     most = max(1.08 * float(cells["spatial_information"].fillna(0.0).max()), 1.0)
-    figure = new_figure(PANEL * max(len(names), 2) + 0.6, 2 * PANEL + 0.4)
+    figure = new_figure(panel * max(len(names), 2) + 0.6, 2 * panel + 0.4)
     panels = figure.subplots(2, len(names), squeeze=False, sharey=True)
     for column, name in zip(panels.T, names, strict=True):
-        for axes, (kind, (key, label)) in zip(column, KINDS.items(), strict=True):
+        for axes, (kind, (key, label)) in zip(column, kinds.items(), strict=True):
             mine = cells[cells["population"] == name]
             passing = mine[f"{kind}_passing"]
             tidy(axes, x=label)

@@ -13,18 +13,14 @@ from cogmap.cells.rates.maps import RateMaps
 from cogmap.cells.rates.tuning import Tuning
 from cogmap.errors import CogmapError
 from cogmap.plots.cells.place_cells import COLOURS
-from cogmap.plots.style import ABSENT, CYCLIC, INK, QUARTERS, SMALL, SOFT, TINY, new_figure, tidy
+from cogmap.plots.style import ABSENT, HUES, INK, QUARTERS, SMALL, SOFT, TINY, new_figure, tidy
 
-COUNT = 6
-"""Cells of a population."""
-WIDTH = 1.7
-"""Of a cell, in inches."""
 THINNEST = 0.25
 """Height of a map over its width; that of a path is stretched to it."""
 
 
-def plot_examples(populations: Mapping[str, Tuning]) -> Figure:
-    """Draw six cells of each population, evenly chosen: rate map above, rate by true heading below.
+def plot_examples(populations: Mapping[str, Tuning], *, count: int = 6) -> Figure:
+    """Draw `count` cells of each population, evenly chosen: rate map above, rate by true heading below.
 
     Both are fractions of their own peak, which is written above the map in Hz. Silent cells are left out.
 
@@ -33,18 +29,19 @@ def plot_examples(populations: Mapping[str, Tuning]) -> Figure:
     CogmapError
         Without a population.
     """
+    width = 1.7  # of a cell, in inches
     if not populations:
         raise CogmapError("no populations to draw; give the maps and curves of at least one")
     edges = next(iter(populations.values())).maps.edges
     aspect = max(float(np.ptp(edges.y) / np.ptp(edges.x)), THINNEST)
-    height = WIDTH * (aspect + 0.45) + 0.5
-    figure = new_figure(COUNT * WIDTH + 0.7, height * len(populations))
+    height = width * (aspect + 0.45) + 0.5
+    figure = new_figure(count * width + 0.7, height * len(populations))
     lines = figure.subfigures(len(populations), 1, squeeze=False, hspace=0.03)[:, 0]
     for line, (name, tuning) in zip(lines, populations.items(), strict=True):
         line.suptitle(name, fontsize=SMALL + 1, color=INK)
-        panels = line.subplots(2, COUNT, squeeze=False, height_ratios=[aspect, 0.45])
+        panels = line.subplots(2, count, squeeze=False, height_ratios=[aspect, 0.45])
         firing = np.flatnonzero(np.nanmax(tuning.maps.rates, axis=(1, 2)) > 0)
-        chosen = firing[(np.arange(min(COUNT, len(firing))) + 0.5).astype(int) * len(firing) // COUNT]
+        chosen = firing[(np.arange(min(count, len(firing))) + 0.5).astype(int) * len(firing) // count]
         for axes in panels[:, len(chosen) :].ravel():
             axes.set_axis_off()
         for (above, below), cell in zip(panels.T, chosen, strict=False):
@@ -69,7 +66,7 @@ def _draw_curve(axes: Axes, curve: Float[np.ndarray, " bins"], *, first: bool) -
     degrees = -180 + (np.arange(len(curve)) + 0.5) * 360 / len(curve)
     part = curve / np.nanmax(curve)
     tidy(axes, x="heading (°)" if first else "", y="rate / peak" if first else "")
-    axes.bar(degrees, np.nan_to_num(part), width=360 / len(curve), color=CYCLIC((degrees + 180) / 360))
+    axes.bar(degrees, np.nan_to_num(part), width=360 / len(curve), color=HUES((degrees + 180) / 360))
     axes.axhline(0, color=SOFT, linewidth=0.4)
     axes.set(xlim=(-180, 180), ylim=(0, 1.05), xticks=QUARTERS, yticks=[0, 1])
     if not first:

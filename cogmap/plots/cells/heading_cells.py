@@ -23,12 +23,6 @@ from cogmap.plots.style import (
     title_sheet,
 )
 
-COLUMNS = 6
-PITCH = 2.75
-"""From one circle to the next, in radii."""
-INCH = 1.6
-"""Radii in an inch."""
-
 
 def plot_tuning_curves(
     curves: Float[np.ndarray, "cells bins"], statistics: pd.DataFrame, count: int = 24
@@ -54,6 +48,8 @@ def plot_tuning_curves(
     CogmapError
         For a count below one, statistics of other cells.
     """
+    # Lengths are in radii of a circle: those in an inch, and from one circle to the next.
+    inch, pitch = 1.6, 2.75
     if len(curves) != len(statistics):
         raise CogmapError(
             f"{len(curves)} curves and statistics of {len(statistics)} cells; take those of the same cells"
@@ -61,14 +57,14 @@ def plot_tuning_curves(
     if count < 1:
         raise CogmapError(f"count is {count}; give the number of curves to draw, at least 1")
     cells = _chosen(statistics["preferred_direction_rad"].to_numpy(dtype=float), count)
-    columns = min(COLUMNS, len(cells))
+    columns = min(6, len(cells))
     lines = -(-len(cells) // columns)
-    right, bottom = PITCH * (columns - 1) + 1.4, -PITCH * (lines - 1) - 1.25
-    figure = new_figure(max((right + 1.55) / INCH + 1.1, 6.5), (1.6 - bottom) / INCH + 0.4)
+    right, bottom = pitch * (columns - 1) + 1.4, -pitch * (lines - 1) - 1.25
+    figure = new_figure(max((right + 1.55) / inch + 1.1, 6.5), (1.6 - bottom) / inch + 0.4)
     axes = figure.add_subplot()
     axes.set_axis_off()
     for index, cell in enumerate(cells):
-        centre = PITCH * np.array([index % columns, -(index // columns)])
+        centre = pitch * np.array([index % columns, -(index // columns)])
         _draw_circle(axes, centre, named=index == 0)
         _draw_curve(axes, curves[cell], statistics.iloc[cell], f"cell {cell}", centre)
     axes.set(xlim=(-1.55, right), ylim=(bottom, 1.6), aspect="equal")

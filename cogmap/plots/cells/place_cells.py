@@ -16,9 +16,6 @@ from cogmap.cells.rates.maps import RateMaps
 from cogmap.errors import CogmapError
 from cogmap.plots.style import ABSENT, BAD, INK, TINY, colour_bar, new_figure, tidy, title_sheet
 
-COLUMNS = 8
-PANEL, GAP, TITLE = 1.25, 0.09, 0.2
-"""Width of a map, and the room between maps and for their titles, in inches."""
 COLOURS = colormaps["viridis"].with_extremes(bad=ABSENT)
 
 
@@ -43,15 +40,17 @@ def plot_rate_maps(maps: RateMaps, statistics: pd.DataFrame, count: int = 40) ->
     CogmapError
         For a count below one, statistics of other cells.
     """
+    # Width of a map, and the room between maps and for their titles, in inches.
+    panel, gap, title = 1.25, 0.09, 0.2
     maps.of_cells(len(statistics))
     if count < 1:
         raise CogmapError(f"count is {count}; give the number of maps to draw, at least 1")
     lines = _lines(statistics, min(count, len(maps)))
     low, high = (np.array([along[end] for along in maps.edges]) for end in (0, -1))
-    inch = (high[0] - low[0]) / PANEL
-    pitch = high - low + np.array([GAP, GAP + TITLE]) * inch
+    inch = (high[0] - low[0]) / panel
+    pitch = high - low + np.array([gap, gap + title]) * inch
     columns = max(len(line) for line in lines)
-    figure = new_figure(max(columns * (PANEL + GAP) + 1.2, 6.5), len(lines) * pitch[1] / inch + 0.6)
+    figure = new_figure(max(columns * (panel + gap) + 1.2, 6.5), len(lines) * pitch[1] / inch + 0.6)
     axes = figure.add_subplot()
     tidy(axes, x="x (m)", y="y (m)")
     axes.spines[:].set_visible(False)
@@ -65,7 +64,7 @@ def plot_rate_maps(maps: RateMaps, statistics: pd.DataFrame, count: int = 40) ->
         axis.set_ticks((shift[:, None] + ticks).ravel().tolist(), labels * len(shift))
     axes.set(
         xlim=(low[0] - 0.03 * inch, high[0] + shifts[0][-1] + 0.03 * inch),
-        ylim=(low[1] + shifts[1][-1] - 0.03 * inch, high[1] + TITLE * inch),
+        ylim=(low[1] + shifts[1][-1] - 0.03 * inch, high[1] + title * inch),
         aspect="equal",
     )
     drawn = f"{len(axes.images)} of {len(maps)} place cells: peak rate and spatial information"
@@ -77,7 +76,7 @@ def plot_rate_maps(maps: RateMaps, statistics: pd.DataFrame, count: int = 40) ->
 def _lines(statistics: pd.DataFrame, count: int) -> list[Int[np.ndarray, " cells"]]:
     """Choose cells, one array per line of the sheet."""
     x, y = (statistics[name].to_numpy(dtype=float) for name in ("centre_x_m", "centre_y_m"))
-    lines = -(-count // COLUMNS)
+    lines = -(-count // 8)
     chosen = []
     for band, places in zip(
         np.array_split(np.argsort(-y, kind="stable"), lines),

@@ -13,27 +13,23 @@ from cogmap.plots.rooms.views import WIDTH, draw_views, sheet_height
 from cogmap.plots.style import INK, SMALL, new_figure
 from cogmap.shape.rips import euclidean, farthest_points
 
-VIEWS = 6
-CANDIDATES = 1000
-"""Free places among which those of the views are picked."""
-GOLDEN = np.pi * (3 - np.sqrt(5))
-"""Headings this far apart (rad) never repeat and soon point everywhere."""
 
-
-def plot_sheet(arena: Arena) -> Figure:
-    """Draw six perspective and six panoramic views of a room, from the same places far from each other.
+def plot_sheet(arena: Arena, *, views: int = 6) -> Figure:
+    """Draw perspective and panoramic views of a room, from the same places far from each other.
 
     Parameters
     ----------
     arena
         The room; the same room gives the same sheet.
+    views
+        How many of each kind.
 
     Raises
     ------
     ArenaError
         When the body fits nowhere.
     """
-    poses = _spread(arena)
+    poses = _spread(arena, views)
     ahead, around = (
         camera.render(arena, poses) for camera in (Camera.perspective(), Camera.panoramic(720, 120))
     )
@@ -46,8 +42,10 @@ def plot_sheet(arena: Arena) -> Figure:
     return figure
 
 
-def _spread(arena: Arena) -> Float[np.ndarray, "views 3"]:
-    xy = arena.sample_free(CANDIDATES, Disc().radius, np.random.default_rng(0))
-    taken = farthest_points(euclidean(xy), VIEWS, 0).indices
-    headings = (GOLDEN * np.arange(len(taken)) + np.pi) % (2 * np.pi) - np.pi
+def _spread(arena: Arena, views: int) -> Float[np.ndarray, "views 3"]:
+    # Free places among which those of the views are picked.
+    xy = arena.sample_free(1000, Disc().radius, np.random.default_rng(0))
+    taken = farthest_points(euclidean(xy), views, 0).indices
+    # Headings a golden angle apart never repeat and soon point everywhere.
+    headings = (np.pi * (3 - np.sqrt(5)) * np.arange(len(taken)) + np.pi) % (2 * np.pi) - np.pi
     return np.column_stack([xy[taken], headings])

@@ -10,9 +10,6 @@ from arena.rooms.arena import Arena
 from cogmap.plots.rooms.room import draw_surfaces
 from cogmap.plots.style import SOFT, direction_colours, heading_bar, new_figure, tidy, tidy_room
 
-LENGTH = 0.16
-"""Of a stroke, m."""
-
 
 def plot_goals(arena: Arena, views: pd.DataFrame) -> Figure:
     """Draw the views at each goal as strokes that point where the body looks, coloured by orientation.
@@ -27,6 +24,7 @@ def plot_goals(arena: Arena, views: pd.DataFrame) -> Figure:
     views
         `x_m`, `y_m`, `heading_rad`, `orientation_rad` (turned into the true frame) and `ring`, a row a view.
     """
+    length = 0.16  # of a stroke, m
     figure = new_figure(11.0, 4.6)
     left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
     tidy_room(left, title=f"{views['ring'].nunique()} goals, {len(views):,} views at them")
@@ -36,8 +34,8 @@ def plot_goals(arena: Arena, views: pd.DataFrame) -> Figure:
     left.quiver(
         views["x_m"],
         views["y_m"],
-        LENGTH * np.cos(heading),
-        LENGTH * np.sin(heading),
+        length * np.cos(heading),
+        length * np.sin(heading),
         color=colours,
         angles="xy",
         scale_units="xy",

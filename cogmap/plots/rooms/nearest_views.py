@@ -13,11 +13,6 @@ from matplotlib.figure import Figure
 
 from cogmap.plots.style import INK, SMALL, new_figure, tidy, tidy_legend
 
-ERRORS = {
-    "position_error_m": "position error of the nearest view (m)",
-    "heading_error_deg": "heading error (°)",
-}
-
 
 def plot_likeness(
     nearest: pd.DataFrame, pictures: Mapping[str, UInt8[np.ndarray, "queries height width 3"]]
@@ -31,9 +26,13 @@ def plot_likeness(
     pictures
         The queries, and for each measure the views that it finds nearest, by name.
     """
+    errors = {
+        "position_error_m": "position error of the nearest view (m)",
+        "heading_error_deg": "heading error (°)",
+    }
     figure = new_figure(11.0, 8.5)
     upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=[1, 1.55])[:, 0]
-    for axes, (column, label) in zip(upper.subplots(1, 2), ERRORS.items(), strict=True):
+    for axes, (column, label) in zip(upper.subplots(1, 2), errors.items(), strict=True):
         _draw_errors(axes, nearest, column, label)
     grid = lower.subplots(len(next(iter(pictures.values()))), len(pictures), squeeze=False)
     for panels, (name, views) in zip(grid.T, pictures.items(), strict=True):

@@ -10,8 +10,6 @@ from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
 from cogmap.plots.style import BAD, INK, TINY, new_figure
 
-WIDTH = 12.0
-
 
 def plot_neighbours(
     queries: UInt8[np.ndarray, "queries height width 3"],
@@ -33,6 +31,7 @@ def plot_neighbours(
     CogmapError
         For no queries, or poses that do not fit.
     """
+    width = 12.0
     if neighbours.size == 0 or len(queries) != len(neighbours):
         raise CogmapError(
             f"{len(queries)} queries have {neighbours.shape[:2]} neighbours; give one row of them per query"
@@ -40,8 +39,8 @@ def plot_neighbours(
     rows, columns = neighbours.shape[:2]
     check_array("poses", poses, (rows, 3))
     check_array("near", near.reshape(-1, 3), (rows * columns, 3))
-    panel = (WIDTH - 0.4) / (columns + 1) * queries.shape[1] / queries.shape[2] + 0.32
-    figure = new_figure(WIDTH, max(2.0, rows * panel))
+    panel = (width - 0.4) / (columns + 1) * queries.shape[1] / queries.shape[2] + 0.32
+    figure = new_figure(width, max(2.0, rows * panel))
     grid = figure.subplots(rows, columns + 1, squeeze=False)
     for row, panels in enumerate(grid):
         images, said = [queries[row], *neighbours[row]], [poses[row], *near[row]]

@@ -19,19 +19,6 @@ from arena.smell.odour import FAINTEST
 from cogmap.inputs import check_array
 from cogmap.plots.style import INK, SMALL, SOFT, TINY, direction_colours, new_figure, tidy_room
 
-GRID = 0.04
-"""Spacing in m of the points where the odour is asked for."""
-MOST = 500
-"""Of them at most, along either axis."""
-LONG = 0.5
-"""Sides of a solid shorter than this (m) are not named."""
-BESIDE = (1.07, 0.8)
-"""Where the light is pointed out, right of the room."""
-HALVINGS = 7
-"""Contours per odour at most."""
-FIRST_VIEWS = 300
-"""How much of the path is drawn as a line: of all of it nothing could be seen."""
-
 
 def plot_room(arena: Arena, poses: Float[np.ndarray, "views 3"] | None = None) -> Figure:
     """Draw the arena from above: walls, solids, platform, odours, light, and where views were taken.
@@ -120,7 +107,8 @@ def _draw_solid(axes: Axes, solid: Solid) -> None:
         for side, name in zip(sides, solid.sides, strict=True):
             axes.plot(*side.T, color=_colour(name), linewidth=3, zorder=4.1)
             along = side[1] - side[0]
-            if np.hypot(*along) >= LONG:
+            # A shorter side has no room for a name.
+            if np.hypot(*along) >= 0.5:
                 _name_side(axes, side, np.array([along[1], -along[0]]) / np.hypot(*along), name)
     width, depth = np.ptp(solid.outline, axis=0)
     middle = shapely.Polygon(solid.outline).representative_point()
@@ -162,10 +150,12 @@ def _name_side(
 
 
 def _draw_light(axes: Axes, light: Light) -> None:
+    # Right of the room.
+    beside = (1.07, 0.8)
     across, up = (light.direction[:2] / np.hypot(*light.direction[:2])).tolist()
     axes.annotate(
         "",
-        BESIDE,
+        beside,
         (40 * across, 40 * up),
         xycoords="axes fraction",
         textcoords="offset points",
@@ -174,7 +164,7 @@ def _draw_light(axes: Axes, light: Light) -> None:
     said = f"light from {light.azimuth_deg:g}°,\n{light.elevation_deg:g}° up,\nstrength {light.strength:g}"
     axes.annotate(
         said.replace("-", "−"),
-        BESIDE,
+        beside,
         (0, -8 if up > 0 else 8),
         xycoords="axes fraction",
         textcoords="offset points",
@@ -189,13 +179,15 @@ def _draw_odours(axes: Axes, arena: Arena) -> None:
     if not arena.sources:
         return
     x0, y0, x1, y1 = arena.bounds
-    x, y = (np.linspace(a, b, min(2 + int((b - a) / GRID), MOST)) for a, b in ((x0, x1), (y0, y1)))
+    # The odour is asked for every 4 cm, at 500 points at most along either axis.
+    x, y = (np.linspace(a, b, min(2 + int((b - a) / 0.04), 500)) for a, b in ((x0, x1), (y0, y1)))
     points = np.stack(np.meshgrid(x, y), axis=-1)
     odours = arena.odours.concentration(points.reshape(-1, 2)).reshape(*points.shape[:2], -1)
     # Where none arrives there is nothing to draw, and no way from the least to nothing.
     odours[odours <= FAINTEST * 1.01] = np.nan
     highest = int(np.floor(np.log2(np.nanmax(odours))))
-    levels = 2.0 ** np.arange(highest - HALVINGS + 1, highest + 1)
+    # At most seven contours an odour can be told apart.
+    levels = 2.0 ** np.arange(highest - 7 + 1, highest + 1)
     hues = direction_colours(2 * np.pi * np.arange(len(arena.sources)) / len(arena.sources))
     for index, (source, hue) in enumerate(zip(arena.sources, hues, strict=True)):
         odour = odours[..., index]
@@ -218,5 +210,6 @@ def _draw_odours(axes: Axes, arena: Arena) -> None:
 def _draw_path(axes: Axes, poses: Float[np.ndarray, "views 3"]) -> None:
     x, y = poses[:, :2].T
     axes.scatter(x, y, s=3.5, color=SOFT, alpha=0.7, linewidths=0, zorder=1, label=f"{len(poses):,} views")
-    first = min(len(poses), FIRST_VIEWS)
+    # Of a line through all views nothing could be seen.
+    first = min(len(poses), 300)
     axes.plot(x[:first], y[:first], color=INK, linewidth=0.6, zorder=1.5, label=f"way of the first {first}")

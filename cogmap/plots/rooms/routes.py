@@ -15,9 +15,6 @@ from cogmap.inputs import check_array
 from cogmap.plots.rooms.room import draw_surfaces
 from cogmap.plots.style import BAD, GOOD, INK, SMALL, new_figure, tidy_room
 
-COLUMNS = 3
-ARROW = 0.2
-"""Length of the arrow that points where the body looks, m."""
 MINE, THEIRS, START, GOAL = "visual roadmap", "OMPL's PRM", "start", "goal"
 
 
@@ -25,7 +22,7 @@ def plot_routes(
     arena: Arena,
     routes: list[tuple[Float[np.ndarray, "_ 3"], Float[np.ndarray, "_ 3"] | None]],
 ) -> Figure:
-    """Draw each route in the room: the poses of the views on the way (arrows), and the peer's path (dashed).
+    """Draw each route in the room: poses of its views (arrows of 20 cm) and the peer's path (dashed).
 
     The shaded band is what the body sweeps; start is a circle, goal a square.
 
@@ -45,7 +42,7 @@ def plot_routes(
         for path in (mine, theirs):
             if path is not None:
                 check_array("route", path, (None, 3))
-    columns = min(COLUMNS, max(1, len(routes)))
+    columns = min(3, max(1, len(routes)))
     rows = max(1, -(-len(routes) // columns))
     x0, y0, x1, y1 = arena.walkable.bounds
     width = 12.0 / columns
@@ -86,8 +83,8 @@ def _draw_route(axes: Axes, path: Float[np.ndarray, "steps 3"]) -> None:
     axes.quiver(
         x,
         y,
-        ARROW * np.cos(heading),
-        ARROW * np.sin(heading),
+        0.2 * np.cos(heading),
+        0.2 * np.sin(heading),
         angles="xy",
         scale_units="xy",
         scale=1,

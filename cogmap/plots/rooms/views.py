@@ -12,8 +12,6 @@ from cogmap.inputs import check_array
 from cogmap.plots.style import INK, QUARTERS, SMALL, new_figure, tidy
 
 WIDTH = 12.0
-ELEVATIONS = np.array([-60, -40, -20, 0, 20, 40, 60])
-"""Ticks in degrees above the horizon."""
 
 
 def plot_views(
@@ -91,12 +89,14 @@ def draw_views(
 
 
 def _draw_panorama(axes: Axes, view: UInt8[np.ndarray, "height width 3"]) -> None:
+    # Ticks in degrees above the horizon.
+    elevations = np.array([-60, -40, -20, 0, 20, 40, 60])
     half = 180 * view.shape[0] / view.shape[1]
     axes.imshow(view, interpolation="nearest", extent=(180, -180, -half, half))
     axes.set_xticks(QUARTERS)
-    heights = np.rad2deg(np.tan(np.deg2rad(ELEVATIONS)))
+    heights = np.rad2deg(np.tan(np.deg2rad(elevations)))
     shown = np.abs(heights) <= half
-    axes.set_yticks(heights[shown], [f"{elevation}".replace("-", "−") for elevation in ELEVATIONS[shown]])
+    axes.set_yticks(heights[shown], [f"{elevation}".replace("-", "−") for elevation in elevations[shown]])
 
 
 def _pose(pose: Float[np.ndarray, " 3"]) -> str:

@@ -23,9 +23,6 @@ from cogmap.plots.style import (
     tidy_room,
 )
 
-STROKES = 3000
-"""Headings drawn at most: of more nothing could be seen."""
-
 
 def plot_walk(
     arena: Arena, times: Float[np.ndarray, " views"], poses: Float[np.ndarray, "views 3"]
@@ -55,7 +52,8 @@ def plot_walk(
     width = 6.0
     figure = new_figure(2 * width, float(np.clip(width * (y1 - y0) / (x1 - x0) + 0.4, 2.0, 12.0)))
     left, right = figure.subplots(1, 2)
-    chosen = poses[:: -(-len(poses) // STROKES)]
+    # Of more headings nothing could be seen.
+    chosen = poses[:: -(-len(poses) // 3000)]
     titles = f"{arena.name}: the way of {len(poses):,} views", f"where it looks in {len(chosen):,} of them"
     for axes, title in zip((left, right), titles, strict=True):
         tidy_room(axes, title=title)

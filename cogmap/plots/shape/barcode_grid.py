@@ -15,11 +15,6 @@ from cogmap.shape.homology import Betti
 
 LOOPS, VOIDS = 6, 4
 """The largest that are drawn."""
-VOID = "#7b4fa3"
-TICKS, ROUND, FEW = (1, 1.5, 2, 3, 5, 10, 30, 100), (1, 2, 5, 10, 30, 100), 15
-"""On the axis, and fewer of them where it is longer than this."""
-WIDTH, HEIGHT = 2.5, 1.45
-"""Of a panel, in inches."""
 
 
 def plot_barcode_grid(
@@ -43,13 +38,15 @@ def plot_barcode_grid(
     CogmapError
         Without any cloud, and for rooms or clouds that are not the same in both.
     """
+    # Of a panel, in inches.
+    width, height = 2.5, 1.45
     clouds = list(next(iter(results.values()), {}))
     shapes = {room: list(found) for room, found in results.items()}
     if not clouds or any(list(known) != clouds for known in (*results.values(), *expected.values())):
         raise CogmapError(f"the rooms have the clouds {shapes}; give each room the same, and at least one")
     if list(results) != list(expected):
         raise CogmapError(f"results of {list(results)}, expected of {list(expected)}; give the same rooms")
-    figure = new_figure(WIDTH * len(clouds) + 0.5, HEIGHT * len(results) + 0.9)
+    figure = new_figure(width * len(clouds) + 0.5, height * len(results) + 0.9)
     panels = figure.subplots(len(results), len(clouds), squeeze=False)
     for column, name in zip(panels.T, clouds, strict=True):
         limit = _limit([results[room][name] for room in results])
@@ -76,17 +73,19 @@ def _limit(results: Sequence[Betti | None]) -> float:
 
 
 def _draw(axes: Axes, result: Betti | None, expected: tuple[int, ...], limit: float) -> str:
+    # A long axis has room for fewer.
+    ticks = (1, 1.5, 2, 3, 5, 10, 30, 100) if limit < 15 else (1, 2, 5, 10, 30, 100)
     right = result is not None and result.numbers[: len(expected)] == expected
     tidy(axes, title=" ")
     axes.title.set_color(INK if right else BAD)
     axes.set_xscale("log")
     axes.set(yticks=[], xlim=(1, limit), ylim=(LOOPS + VOIDS - 0.2, -0.8))
-    axes.xaxis.set_major_locator(FixedLocator([tick for tick in TICKS if limit < FEW or tick in ROUND]))
+    axes.xaxis.set_major_locator(FixedLocator(ticks))
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axes.xaxis.set_minor_locator(NullLocator())
     if result is None:
         return f"nothing, not {list(expected)}"
-    for dimension, first, count, colour in ((1, 0, LOOPS, GOOD), (2, LOOPS, VOIDS, VOID)):
+    for dimension, first, count, colour in ((1, 0, LOOPS, GOOD), (2, LOOPS, VOIDS, "#7b4fa3")):
         threshold, shown = result.thresholds[dimension], np.minimum(result.ratios[dimension][:count], limit)
         colours = [colour if rank < result.numbers[dimension] else SOFT for rank in range(len(shown))]
         axes.barh(first + np.arange(len(shown)), shown - 1, left=1, height=0.7, color=colours)

@@ -13,14 +13,8 @@ from cogmap.errors import CogmapError
 from cogmap.plots.style import BAD, GOOD, INK, SMALL, SOFT, TINY, new_figure, tidy
 from cogmap.shape.homology import Betti
 
-BARS = 12
-"""The largest that are drawn."""
-TICKS = (1, 1.2, 1.5, 2, 3, 5, 10, 20, 50, 100)
-FINE_TICKS = (1, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2, 2.3)
-NAMES = {1: "loops", 2: "voids"}
 
-
-def plot_barcodes(results: Mapping[str, Betti]) -> Figure:
+def plot_barcodes(results: Mapping[str, Betti], *, bars: int = 12) -> Figure:
     """Draw, for every result and dimension, the largest bars as π = death / birth against the threshold.
 
     One line of panels per result: loops (H₁) and voids (H₂). Bars that count are coloured; the dashed line is
@@ -30,6 +24,8 @@ def plot_barcodes(results: Mapping[str, Betti]) -> Figure:
     ----------
     results
         From `betti`, by the name of the cloud.
+    bars
+        How many of the largest are drawn in a panel.
 
     Raises
     ------
@@ -49,7 +45,7 @@ def plot_barcodes(results: Mapping[str, Betti]) -> Figure:
         panels = line.subplots(1, highest, squeeze=False)[0]
         for dimension, (axes, limit) in enumerate(zip(panels, limits, strict=True), start=1):
             if dimension < len(result.numbers):
-                _draw_bars(axes, result, dimension, limit)
+                _draw_bars(axes, result, dimension, limit, bars)
             else:
                 axes.set_axis_off()
     return figure
@@ -72,11 +68,17 @@ def _limit(results: Mapping[str, Betti], dimension: int) -> float:
     return 1.15 * float(together[np.isfinite(together)].max())
 
 
-def _draw_bars(axes: Axes, result: Betti, dimension: int, limit: float) -> None:
+def _draw_bars(axes: Axes, result: Betti, dimension: int, limit: float, most: int) -> None:
+    fine_ticks = (1, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2, 2.3)
+    ticks = (1, 1.2, 1.5, 2, 3, 5, 10, 20, 50, 100)
     found, threshold = result.ratios[dimension], result.thresholds[dimension]
-    shown = np.minimum(found[:BARS], limit)
+    shown = np.minimum(found[:most], limit)
     colours = [GOOD if rank < result.numbers[dimension] else SOFT for rank in range(len(shown))]
-    tidy(axes, x=f"π of H{dimension} ({NAMES[dimension]}), death / birth, no unit", y="bar, largest first")
+    tidy(
+        axes,
+        x=f"π of H{dimension} ({'loops' if dimension == 1 else 'voids'}), death / birth, no unit",
+        y="bar, largest first",
+    )
     axes.set_xscale("log")
     axes.barh(np.arange(len(shown)), shown - 1, left=1, height=0.7, color=colours)
     axes.axvline(threshold, color=BAD, linewidth=1.2, linestyle="--")
@@ -90,7 +92,7 @@ def _draw_bars(axes: Axes, result: Betti, dimension: int, limit: float) -> None:
         fontsize=TINY,
         color=BAD,
     )
-    axes.xaxis.set_major_locator(FixedLocator(FINE_TICKS if limit < 2.5 else TICKS))
+    axes.xaxis.set_major_locator(FixedLocator(fine_ticks if limit < 2.5 else ticks))
     axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set(xlim=(1, limit), ylim=(max(len(shown), 3) - 0.4, -1.6), yticks=[])

@@ -14,12 +14,6 @@ from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
 from cogmap.plots.style import INK, SMALL, TINY, colour_bar, direction_colours, heading_bar, new_figure, tidy
 
-POINTS = 6000
-"""More would hide each other."""
-SIZE = 3.0
-PADS = {2: 0.02, 3: 0.14}
-"""Room between axes and colour bar, as a share of the axes: a third axis has its label there."""
-
 
 def plot_embedding(
     embedding: Float[np.ndarray, "views components"],
@@ -27,11 +21,11 @@ def plot_embedding(
     others: Mapping[str, Float[np.ndarray, "views"]] | None = None,
     *,
     coordinates: Sequence[int] = (0, 1, 2),
+    most: int = 6000,
 ) -> Figure:
     """Draw two or three coordinates of the views, once coloured by heading and once by each of the others.
 
-    Coordinates have the unit of the metric that they were found in, no unit for words. At most 6,000 views
-    are drawn, evenly chosen.
+    Coordinates have the unit of the metric that they were found in, no unit for words.
 
     Parameters
     ----------
@@ -43,12 +37,16 @@ def plot_embedding(
         What else to colour by, under a name with its unit.
     coordinates
         Which two or three to draw.
+    most
+        Views that are drawn, evenly chosen; more than 6,000 would hide each other.
 
     Raises
     ------
     CogmapError
         For values that are not finite, shapes that do not fit, coordinates that do not exist.
     """
+    # Room between axes and colour bar, as a share of the axes: a third axis has its label there.
+    pads = {2: 0.02, 3: 0.14}
     check_array("embedding", embedding, (None, None))
     check_array("headings", headings, (len(embedding),))
     components = len(coordinates)
@@ -59,7 +57,7 @@ def plot_embedding(
     others = others or {}
     for name, values in others.items():
         check_array(name, values, (len(embedding),))
-    chosen = np.linspace(0, len(embedding) - 1, min(len(embedding), POINTS)).astype(int)
+    chosen = np.linspace(0, len(embedding) - 1, min(len(embedding), most)).astype(int)
     figure = new_figure(5.2 * (1 + len(others)), 4.6)
     panels = figure.subplots(
         1, 1 + len(others), squeeze=False, subplot_kw={"projection": "3d"} if components == 3 else {}
@@ -67,10 +65,10 @@ def plot_embedding(
     points = embedding[chosen][:, list(coordinates)].T
     names = [f"coordinate {item + 1} (no unit)" for item in coordinates]
     _draw(panels[0], points, names, direction_colours(headings[chosen]))
-    heading_bar(panels[0], pad=PADS[components])
+    heading_bar(panels[0], pad=pads[components])
     for axes, (name, values) in zip(panels[1:], others.items(), strict=True):
         drawn = _draw(axes, points, names, values[chosen])
-        colour_bar(axes, drawn, name, pad=PADS[components])
+        colour_bar(axes, drawn, name, pad=pads[components])
     figure.suptitle(f"{len(embedding):,} views on their manifold", fontsize=SMALL, color=INK)
     return figure
 
@@ -85,6 +83,6 @@ def _draw(axes: Any, points: np.ndarray, names: list[str], colours: np.ndarray) 
         axes.view_init(elev=28, azim=-60)
     else:
         axes.set_aspect("equal")
-    drawn: PathCollection = axes.scatter(*points, s=SIZE, c=colours, linewidths=0)
+    drawn: PathCollection = axes.scatter(*points, s=3.0, c=colours, linewidths=0)
     drawn.set_cmap("viridis")
     return drawn

@@ -13,9 +13,6 @@ from cogmap.cells.rates.bins import bin_edges, means_by_bin
 from cogmap.errors import CogmapError
 from cogmap.plots.style import ABSENT, colour_bar, new_figure, tidy_room
 
-BIN = 0.25
-"""Side of a bin, m."""
-
 
 def plot_confusion(rooms: Mapping[str, pd.DataFrame]) -> Figure:
     """Draw the share of confused views by place, grey without a view.
@@ -38,7 +35,7 @@ def plot_confusion(rooms: Mapping[str, pd.DataFrame]) -> Figure:
         figure.subplots(1, len(rooms), squeeze=False)[0], rooms.items(), strict=True
     ):
         positions = views[["x_m", "y_m"]].to_numpy()
-        edges = bin_edges(positions, BIN)
+        edges = bin_edges(positions, 0.25)
         ny, nx = edges.shape
         share = means_by_bin(edges.bin_of(positions), ny * nx, views[["confused"]].to_numpy(float))
         rate = 100 * views["confused"].mean()

@@ -25,9 +25,6 @@ from cogmap.plots.style import (
     tidy_room,
 )
 
-BIN = 0.2
-"""Side in m of the bins that errors are averaged in: a few views each."""
-
 
 def plot_compass(
     headings_estimated: Float[np.ndarray, " views"],
@@ -96,7 +93,8 @@ def _draw_sizes(axes: Axes, size: Float[np.ndarray, " views"]) -> None:
 
 
 def _draw_room(axes: Axes, error: np.ndarray, positions: Float[np.ndarray, "views 2"]) -> None:
-    edges = bin_edges(positions, BIN)
+    # Bins of 20 cm hold a few views each.
+    edges = bin_edges(positions, 0.2)
     ny, nx = edges.shape
     parts = np.stack([error.real, error.imag], axis=1)
     real, imaginary = means_by_bin(edges.bin_of(positions), ny * nx, parts).T

@@ -10,8 +10,6 @@ from matplotlib.figure import Figure
 from cogmap.errors import CogmapError
 from cogmap.plots.style import BAD, GOOD, SOFT, new_figure, tidy, tidy_legend
 
-KINDS = (("", "interpolated", GOOD), ("nearest_", "nearest view", BAD))
-
 
 def plot_localisation(table: pd.DataFrame) -> Figure:
     """Draw the share of views whose errors are below so many cm, and so many degrees, on logarithmic axes.
@@ -27,6 +25,7 @@ def plot_localisation(table: pd.DataFrame) -> Figure:
     CogmapError
         For a table without a view.
     """
+    kinds = (("", "interpolated", GOOD), ("nearest_", "nearest view", BAD))
     table = table.dropna()
     if table.empty:
         raise CogmapError("no view has a place; give at least one")
@@ -34,7 +33,7 @@ def plot_localisation(table: pd.DataFrame) -> Figure:
     left, right = figure.subplots(1, 2, sharey=True)
     tidy(left, x="position error (cm)", y="share of views", title=f"{len(table):,} views")
     tidy(right, x="heading error (°)")
-    for prefix, name, colour in KINDS:
+    for prefix, name, colour in kinds:
         _draw(left, 100 * table[f"{prefix}position_error_m"].to_numpy(), name, " cm", colour)
         _draw(right, table[f"{prefix}heading_error_deg"].to_numpy(), name, "°", colour)
     left.set_ylim(0, 1.25)

@@ -13,9 +13,6 @@ from cogmap.cells.rates.bins import bin_edges, means_by_bin
 from cogmap.inputs import check_array
 from cogmap.plots.style import BAD, GOOD, SOFT, colour_bar, new_figure, tidy, tidy_legend, tidy_room
 
-BIN = 0.2
-"""Mesh of the lattice, m."""
-
 
 def plot_metric_map(mapped: Float[np.ndarray, "views 2"], true: Float[np.ndarray, "views 2"]) -> Figure:
     """Draw how the learnt map bends a square lattice of the room, and how far off it puts each view.
@@ -51,7 +48,7 @@ def plot_metric_map(mapped: Float[np.ndarray, "views 2"], true: Float[np.ndarray
 
 
 def _draw_lattice(axes: Axes, away: Float[np.ndarray, "views 2"], true: Float[np.ndarray, "views 2"]) -> None:
-    edges = bin_edges(true, BIN)
+    edges = bin_edges(true, 0.2)
     ny, nx = edges.shape
     mean = means_by_bin(edges.bin_of(true), ny * nx, away).reshape(ny, nx, 2)
     square = np.stack(np.meshgrid(*edges.centres), axis=2)

@@ -12,9 +12,6 @@ from matplotlib.figure import Figure
 from cogmap.inputs import check_array
 from cogmap.plots.style import BAD, GOOD, INK, SOFT, colour_bar, new_figure, tidy, tidy_legend, tidy_room
 
-SEGMENTS = 1500
-"""More would hide each other."""
-
 
 def plot_position(
     recalled: Float[np.ndarray, "views 2"],
@@ -61,7 +58,8 @@ def plot_position(
 def _draw_room(
     axes: Axes, recalled: Float[np.ndarray, "views 2"], true: Float[np.ndarray, "views 2"]
 ) -> None:
-    count = min(len(true), SEGMENTS)
+    # More would hide each other.
+    count = min(len(true), 1500)
     chosen = (np.arange(count) * len(true) / count).astype(int)
     ends = np.stack([true[chosen], recalled[chosen]], axis=1)
     length = 100 * np.linalg.norm(recalled[chosen] - true[chosen], axis=1)

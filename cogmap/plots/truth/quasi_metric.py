@@ -20,13 +20,8 @@ from cogmap.plots.style import (
     tidy_room,
 )
 
-BINS = 60
-ROOMY = 0.5
-"""Least extent along x and y (m) of places that are worth a map."""
 DISTORTION = "geodesic / motion, over that of all pairs"
 TICKS = [0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 2]
-BANDS = 25
-"""Of motion distance, in each of which the median geodesic is taken."""
 
 
 def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
@@ -42,7 +37,8 @@ def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
         `x_m`, `y_m`, `heading_rad` and `distortion`, a row a view: 2 where geodesics are twice as long for
         the distance as they are on the whole.
     """
-    roomy = bool((places[["x_m", "y_m"]].max() - places[["x_m", "y_m"]].min() > ROOMY).all())
+    # Places are worth a map when they extend over half a metre along x and y.
+    roomy = bool((places[["x_m", "y_m"]].max() - places[["x_m", "y_m"]].min() > 0.5).all())
     widths = [1.0, 0.9, 1.2] if roomy else [1.0, 0.9]
     figure = new_figure(5.0 * sum(widths), 4.2)
     left, middle, *right = figure.subplots(1, len(widths), width_ratios=widths)
@@ -84,15 +80,17 @@ def _draw_room(axes: Axes, places: pd.DataFrame) -> None:
 
 
 def _draw_pairs(axes: Axes, motion: np.ndarray, geodesic: np.ndarray) -> None:
+    # In each band of motion distance the median geodesic is taken.
+    bands = 25
     tidy(
         axes,
         x="distance of the poses (m, 0.5 m/rad)",
         y="geodesic of the images (no unit)",
         title=f"{len(motion):,} pairs; median in red",
     )
-    counts = axes.hist2d(motion, geodesic, bins=BINS, cmap="Greys", cmin=1)[3]
+    counts = axes.hist2d(motion, geodesic, bins=60, cmap="Greys", cmin=1)[3]
     colour_bar(axes, counts, "pairs")
-    edges = np.quantile(motion, np.linspace(0, 1, BANDS + 1))
-    band = np.clip(np.searchsorted(edges, motion, side="right") - 1, 0, BANDS - 1)
+    edges = np.quantile(motion, np.linspace(0, 1, bands + 1))
+    band = np.clip(np.searchsorted(edges, motion, side="right") - 1, 0, bands - 1)
     medians = pd.DataFrame({"band": band, "motion": motion, "geodesic": geodesic}).groupby("band").median()
     axes.plot(medians["motion"], medians["geodesic"], color=BAD, linewidth=1.6)

@@ -19,4 +19,5 @@ def test_everything_is_written_and_reads_back(tmp_path: Path) -> None:
     }
     pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "errors.parquet"), table)
     assert matplotlib.image.imread(tmp_path / "line.png").std() > 0.01
-    assert len(list(tmp_path.iterdir())) == 3
+    pd.testing.assert_frame_equal(pd.read_csv(tmp_path / "errors.csv"), table)
+    assert len(list(tmp_path.iterdir())) == 4

@@ -1,3 +1,4 @@
+import sys
 from collections.abc import Callable
 
 import numpy as np
@@ -120,6 +121,13 @@ def test_descent_gives_the_same_twice() -> None:
     one, other = (nearest_points(X, 8, exact=100) for _ in range(2))
     np.testing.assert_array_equal(one.indices, other.indices)
     assert (one.indices != np.arange(500)[:, None]).all()
+
+
+def test_large_clouds_need_their_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pynndescent", None)
+    with pytest.raises(CogmapError, match=r"neighbours of 20 points .*pip install 'cogmap\[large\]'"):
+        nearest_points(GOOD, 3, exact=19)
+    nearest_points(GOOD, 3, exact=20)
 
 
 def test_descent_is_asked_for_directions(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,8 +7,7 @@ from scipy.spatial.distance import cdist
 
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import (
-    DETOUR,
-    TINY,
+    SMALLEST,
     checked_graph,
     components,
     lengthen_shortcuts,
@@ -50,8 +49,8 @@ def test_repeated_points_stay_connected() -> None:
     repeated = np.concatenate([X, np.repeat(X[:1], 40, axis=0), X[5:8]])
     graph = neighbour_graph(repeated)
     assert components(graph).number == 1
-    assert graph[60, 0] == TINY
-    assert graph[91, 6] == TINY
+    assert graph[60, 0] == SMALLEST
+    assert graph[91, 6] == SMALLEST
     np.testing.assert_array_equal(graph[:50, :50].toarray(), neighbour_graph(X).toarray())
 
 
@@ -69,11 +68,12 @@ def test_shortcuts_become_long() -> None:
     rows, columns = np.array(far).T
     jumps = sp.csr_array((np.full(len(far), 0.1), (rows, columns)), shape=graph.shape)
     longer = lengthen_shortcuts(sp.csr_array(graph + jumps + jumps.T))
-    np.testing.assert_allclose(longer[rows, columns], 0.1 * DETOUR)
+    np.testing.assert_allclose(longer[rows, columns], 0.5)
     same = (longer.multiply(graph.astype(bool)) != graph).nnz
     assert same < 0.02 * graph.nnz
     assert (longer != longer.T).nnz == 0
     assert (lengthen_shortcuts(graph, 0) != graph).nnz == 0
+    assert (lengthen_shortcuts(graph, detour=1.0) != graph).nnz == 0
 
 
 def test_common_neighbours_are_counted_right() -> None:
@@ -81,7 +81,7 @@ def test_common_neighbours_are_counted_right() -> None:
     joined = graph.toarray() > 0
     for shared in range(6):
         few = (joined.astype(int) @ joined) < shared
-        expected = np.where(few, DETOUR, 1) * graph.toarray()
+        expected = np.where(few, 5, 1) * graph.toarray()
         np.testing.assert_array_equal(lengthen_shortcuts(graph, shared).toarray(), expected)
 
 
@@ -118,7 +118,9 @@ def test_views_that_share_no_word_are_not_joined() -> None:
     np.testing.assert_array_equal(np.sort(found.sizes), [5, 5, 40, 40])
     # Fewer than eight others to be near to, and views without words, which repeat each other.
     np.testing.assert_array_equal((graph[80:85] > 0).sum(axis=1), 4)
-    np.testing.assert_array_equal(graph[85:, 85].toarray().ravel(), [0, TINY, TINY, TINY, TINY])
+    np.testing.assert_array_equal(
+        graph[85:, 85].toarray().ravel(), [0, SMALLEST, SMALLEST, SMALLEST, SMALLEST]
+    )
 
 
 def test_constant_views_are_one_point_too_few() -> None:

@@ -8,14 +8,14 @@ import shapely
 
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import neighbour_graph
-from cogmap.navigation.roadmap import ONE_SIDED, VisualRoadmap
+from cogmap.navigation.roadmap import VisualRoadmap
 
 
 def test_it_plans_what_networkx_plans() -> None:
     rng = np.random.default_rng(0)
     points = rng.random((200, 3))
-    planner = VisualRoadmap(points, neighbours=8, power=1.5)
-    graph = neighbour_graph(points, 8, one_sided=ONE_SIDED)
+    planner = VisualRoadmap(points, neighbours=8, power=1.5, one_sided=3)
+    graph = neighbour_graph(points, 8, one_sided=3)
     graph.data **= 1.5
     theirs = nx.from_scipy_sparse_array(graph)
     for start, goal in rng.integers(0, 200, (20, 2)):
@@ -24,6 +24,12 @@ def test_it_plans_what_networkx_plans() -> None:
         assert route[-1] == goal
         cost = sum(graph[a, b] for a, b in pairwise(route))
         assert cost == pytest.approx(nx.dijkstra_path_length(theirs, start, goal))
+
+
+def test_views_are_joined_to_their_five_nearest_unless_told() -> None:
+    points = np.random.default_rng(1).random((60, 2))
+    wanted = neighbour_graph(points, 8, one_sided=5)
+    assert (VisualRoadmap(points, neighbours=8, power=1.0).graph != wanted).nnz == 0
 
 
 def test_views_that_never_enter_obstacles_lead_around_them() -> None:

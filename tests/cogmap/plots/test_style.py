@@ -10,7 +10,7 @@ from cogmap.plots import style
 
 
 def test_cyclic_colours_close_up_and_are_equally_light() -> None:
-    colours = style.CYCLIC(np.arange(360))[:, :3]
+    colours = style.HUES(np.arange(360))[:, :3]
     steps = np.linalg.norm(colours - np.roll(colours, 1, axis=0), axis=1)
     assert steps.max() < 0.02
     assert colours.min() > 0

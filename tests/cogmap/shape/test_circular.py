@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from cogmap.cells.decoding.decoders import fit_heading_frame, heading_errors
 from cogmap.errors import CogmapError
-from cogmap.graph.neighbour_graph import TINY, neighbour_graph
+from cogmap.graph.neighbour_graph import SMALLEST, neighbour_graph
 from cogmap.shape.circular import circular_coordinate
 
 
@@ -75,7 +75,7 @@ def test_repeats_have_nearly_the_same_phase() -> None:
     X, _ = noisy_ring(300, np.random.default_rng(6))
     graph = neighbour_graph(np.concatenate([X, X[:30]]))
     assert graph.min() == 0
-    assert graph.data.min() == TINY
+    assert graph.data.min() == SMALLEST
     phase = circular_coordinate(graph).phase
     assert np.abs(np.angle(np.exp(1j * (phase[300:] - phase[:30])))).max() < 0.1
 

@@ -51,6 +51,8 @@ def test_potential_of_a_path() -> None:
     steps = np.diff(height[inside])
     np.testing.assert_allclose(steps, steps[0], rtol=1e-5)
     assert inside.sum() > 50
+    longer = height_coordinate(sp.csr_array(graph + graph.T), embedding, phase, similar=1 / 20, end=0.3)
+    assert ((longer > 0) & (longer < 1)).sum() < 40
 
 
 def test_points_without_a_phase_have_no_height() -> None:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from cogmap.errors import CogmapError
-from cogmap.shape.nerve import ACTIVE, TOGETHER, population_nerve
+from cogmap.shape.nerve import ACTIVE, population_nerve
 
 VIEWS = np.linspace(-np.pi, np.pi, 360, endpoint=False)
 
@@ -36,7 +36,7 @@ def test_three_arcs_that_meet_at_their_ends_close_a_circle() -> None:
 
 
 def test_where_three_arcs_share_a_view_nothing_is_left_open() -> None:
-    found = population_nerve(np.concatenate([arcs(3, 1.2), np.full((TOGETHER, 3), 20.0)]))
+    found = population_nerve(np.concatenate([arcs(3, 1.2), np.full((3, 3), 20.0)]))
     assert found.numbers == (1, 0)
     assert found.simplices == (3, 3, 1)
 
@@ -106,9 +106,9 @@ def test_active_is_a_share_of_the_peak() -> None:
 
 def test_too_few_views_join_nothing() -> None:
     rates = np.zeros((20, 2))
-    rates[:10, 0] = rates[11 - TOGETHER :, 1] = 1
+    rates[:10, 0] = rates[8:, 1] = 1
     assert population_nerve(rates).numbers == (2, 0)
-    rates[10 - TOGETHER, 1] = 1
+    rates[7, 1] = 1
     assert population_nerve(rates).numbers == (1, 0)
 
 

@@ -4,7 +4,7 @@ from ripser import ripser
 from scipy.spatial.distance import cdist
 from sklearn.manifold import Isomap
 
-from cogmap.graph.neighbour_graph import TINY
+from cogmap.graph.neighbour_graph import SMALLEST
 from cogmap.shape.rips import euclidean, farthest_points, geodesic, ratios, rips_bars
 
 
@@ -96,5 +96,5 @@ def test_geodesics_are_those_of_isomap() -> None:
 def test_geodesics_pass_through_repeats() -> None:
     X = np.linspace(0, 1, 30)[:, None]
     seen = geodesic(np.concatenate([X, X]), 2)
-    assert seen(0)[30] == TINY
+    assert seen(0)[30] == SMALLEST
     np.testing.assert_allclose(seen(30)[[29, 59]], 1)

@@ -3,7 +3,7 @@ import pytest
 
 from cogmap.cells import Tuning, rate_maps, tuning_curves
 from cogmap.errors import CogmapError
-from cogmap.plots.cells.examples import COUNT, plot_examples
+from cogmap.plots.cells.examples import plot_examples
 
 
 @pytest.fixture(scope="module")
@@ -18,9 +18,10 @@ def tuning() -> Tuning:
 
 def test_firing_cells_are_drawn_map_above_curve(tuning: Tuning) -> None:
     figure = plot_examples({"some": tuning, "more": tuning})
-    maps, curves = (np.array(figure.axes).reshape(2, 2, COUNT)[0, row] for row in (0, 1))
+    maps, curves = (np.array(figure.axes).reshape(2, 2, 6)[0, row] for row in (0, 1))
     shown = [int(axes.get_title().split()[1].rstrip(":")) for axes in maps]
-    assert len(set(shown)) == COUNT
+    assert len(set(shown)) == 6
+    assert len(plot_examples({"some": tuning}, count=3).axes) == 2 * 3
     assert 4 not in shown
     for axes, below, cell in zip(maps, curves, shown, strict=True):
         (mesh,) = axes.collections

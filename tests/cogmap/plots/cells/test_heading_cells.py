@@ -9,7 +9,7 @@ from matplotlib.colors import to_hex, to_rgba
 from cogmap.cells import heading_statistics, tuning_curves
 from cogmap.errors import CogmapError
 from cogmap.plots.cells.heading_cells import plot_tuning_curves
-from cogmap.plots.style import BAD, CYCLIC, direction_colours
+from cogmap.plots.style import BAD, HUES, direction_colours
 
 Cells = tuple[np.ndarray, pd.DataFrame]
 
@@ -55,7 +55,7 @@ def test_colours_are_cyclic_in_the_preferred_direction(cells: Cells) -> None:
         np.testing.assert_allclose(to_rgba(line.get_color()), expected[cell])
     assert bar.get_ylabel() == "preferred direction (°)"
     np.testing.assert_array_equal(bar.get_yticks(), [-180, -90, 0, 90, 180])
-    np.testing.assert_allclose(CYCLIC(0.0), CYCLIC(1.0), atol=0.02)
+    np.testing.assert_allclose(HUES(0.0), HUES(1.0), atol=0.02)
 
 
 def test_cells_are_spread_over_all_directions(cells: Cells) -> None:

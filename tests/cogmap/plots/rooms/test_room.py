@@ -12,7 +12,7 @@ from arena.errors import ArenaError
 from arena.rooms.arena import Arena
 from arena.rooms.materials import texture
 from cogmap.errors import CogmapError
-from cogmap.plots.rooms.room import FIRST_VIEWS, plot_room
+from cogmap.plots.rooms.room import plot_room
 
 
 def colour(material: str) -> np.ndarray:
@@ -186,8 +186,8 @@ def test_every_view_is_a_dot_and_the_first_are_joined(pillar: Arena) -> None:
     (axes,) = figure.axes
     (dots,) = [found for found in axes.collections if isinstance(found, PathCollection)]
     np.testing.assert_array_equal(dots.get_offsets(), poses[:, :2])
-    (way,) = [line for line in axes.lines if len(line.get_xdata()) == FIRST_VIEWS]
-    np.testing.assert_array_equal(way.get_xydata(), poses[:FIRST_VIEWS, :2])
+    (way,) = [line for line in axes.lines if len(line.get_xdata()) == 300]
+    np.testing.assert_array_equal(way.get_xydata(), poses[:300, :2])
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()][-2:] == ["1,234 views", "way of the first 300"]
 

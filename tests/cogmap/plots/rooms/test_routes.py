@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 from arena import Arena, Disc
 from cogmap import CogmapError
 from cogmap.plots import plot_routes
-from cogmap.plots.rooms.routes import ARROW
 from cogmap.plots.style import GOOD
 
 ROOM = Arena.load("obstacles")
@@ -36,8 +35,8 @@ def test_paths_and_their_ends_are_those_given() -> None:
 def test_arrows_point_where_the_body_looks() -> None:
     arrows = plot_routes(ROOM, [(MINE, None)]).axes[0].collections[-1]
     np.testing.assert_array_equal(arrows.get_offsets(), MINE[:, :2])
-    np.testing.assert_allclose(arrows.U, ARROW * np.cos(MINE[:, 2]))
-    np.testing.assert_allclose(arrows.V, ARROW * np.sin(MINE[:, 2]))
+    np.testing.assert_allclose(arrows.U, 0.2 * np.cos(MINE[:, 2]))
+    np.testing.assert_allclose(arrows.V, 0.2 * np.sin(MINE[:, 2]))
 
 
 def test_the_band_is_what_the_body_sweeps() -> None:

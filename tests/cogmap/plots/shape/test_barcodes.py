@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
 from cogmap.errors import CogmapError
-from cogmap.plots.shape.barcodes import BARS, plot_barcodes
+from cogmap.plots.shape.barcodes import plot_barcodes
 from cogmap.plots.style import BAD, GOOD, SOFT
 from cogmap.shape.homology import Betti
 
@@ -44,8 +44,10 @@ def colours(axes: Axes) -> list[str]:
 
 def test_bars_are_the_largest_ratios_in_falling_order(annulus: Betti) -> None:
     loops, voids = plot_barcodes({"views": annulus}).axes
-    np.testing.assert_allclose(lengths(loops), LOOPS[:BARS])
+    np.testing.assert_allclose(lengths(loops), LOOPS[:12])
     np.testing.assert_allclose(lengths(voids), VOIDS)
+    fewer = plot_barcodes({"views": annulus}, bars=2).axes
+    assert [lengths(axes) for axes in fewer] == [lengths(loops)[:2], lengths(voids)[:2]]
     assert all(bar.get_x() == 1 for bar in loops.patches)
     rows = [bar.get_y() for bar in loops.patches]
     assert rows == sorted(rows)

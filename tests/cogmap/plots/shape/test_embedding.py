@@ -3,7 +3,6 @@ import pytest
 
 from cogmap import CogmapError
 from cogmap.plots import plot_embedding
-from cogmap.plots.shape.embedding import POINTS
 from cogmap.plots.style import direction_colours
 
 HEADINGS = np.linspace(-3, 3, 400)
@@ -30,8 +29,9 @@ def test_three_coordinates_are_drawn_in_space_and_coloured_by_the_others(tmp_pat
 
 def test_of_many_views_some_are_drawn() -> None:
     many = np.tile(RING, (40, 1))
-    figure = plot_embedding(many, np.tile(HEADINGS, 40), coordinates=(0, 1))
-    assert len(figure.axes[0].collections[0].get_offsets()) == POINTS
+    for count, few in ((6000, {}), (70, {"most": 70})):
+        figure = plot_embedding(many, np.tile(HEADINGS, 40), coordinates=(0, 1), **few)
+        assert len(figure.axes[0].collections[0].get_offsets()) == count
 
 
 @pytest.mark.parametrize("coordinates", [(0,), (0, 1, 2), (0, 1, 0, 1)])

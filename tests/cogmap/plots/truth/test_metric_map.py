@@ -3,12 +3,12 @@ import pytest
 from matplotlib.collections import LineCollection
 
 from cogmap.errors import CogmapError
-from cogmap.plots.truth.metric_map import BIN, plot_metric_map
+from cogmap.plots.truth.metric_map import plot_metric_map
 
 
 @pytest.fixture
 def true() -> np.ndarray:
-    x = np.arange(-10, 10) * BIN / 4 + BIN / 8
+    x = np.arange(-10, 10) * 0.05 + 0.025
     return np.stack(np.meshgrid(x, x), axis=2).reshape(-1, 2)
 
 
@@ -17,7 +17,7 @@ def test_the_lattice_is_moved_by_the_mean_error(true: np.ndarray) -> None:
     plain, moved = (found for found in left.collections if isinstance(found, LineCollection))
     ends = [np.array(found.get_segments()) for found in (plain, moved)]
     np.testing.assert_allclose(ends[1] - ends[0], np.broadcast_to([0.03, 0.04], ends[0].shape))
-    np.testing.assert_allclose(np.linalg.norm(ends[0][:, 1] - ends[0][:, 0], axis=1), BIN)
+    np.testing.assert_allclose(np.linalg.norm(ends[0][:, 1] - ends[0][:, 0], axis=1), 0.2)
     np.testing.assert_allclose(moved.get_array(), 5)
     assert bar.get_ylabel() == "mean error (cm)"
     assert (left.get_xlabel(), left.get_ylabel()) == ("x (m)", "y (m)")

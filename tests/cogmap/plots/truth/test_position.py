@@ -3,7 +3,7 @@ import pytest
 from matplotlib.collections import LineCollection, PathCollection
 
 from cogmap.errors import CogmapError
-from cogmap.plots.truth.position import SEGMENTS, plot_position
+from cogmap.plots.truth.position import plot_position
 
 Views = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -35,8 +35,8 @@ def test_of_many_views_some_are_drawn_evenly_and_all_are_counted() -> None:
     left, right, _ = plot_position(recalled, true).axes
     (segments,) = [found for found in left.collections if isinstance(found, LineCollection)]
     drawn = np.array(segments.get_segments())
-    assert len(drawn) == SEGMENTS
-    np.testing.assert_allclose(drawn[:, 0, 0], np.arange(SEGMENTS) * 4 / 1000)
+    assert len(drawn) == 1500
+    np.testing.assert_allclose(drawn[:, 0, 0], np.arange(1500) * 4 / 1000)
     assert right.get_title() == "6,000 views"
 
 

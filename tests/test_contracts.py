@@ -1,0 +1,41 @@
+"""The import contracts that `make lint` checks are all there, and none has a hole."""
+
+import itertools
+import tomllib
+from pathlib import Path
+
+import pytest
+
+PROJECT = Path(__file__).parents[1] / "pyproject.toml"
+NEVER = {
+    ("cogmap.map", "cogmap.features", "cogmap.graph", "cogmap.shape", "cogmap.navigation"): (
+        "cogmap.evaluation",
+        "cogmap.experiments",
+    ),
+    ("cogmap.graph", "cogmap.shape", "cogmap.map"): ("arena",),
+    ("neurons",): ("arena", "cogmap"),
+    ("arena",): ("neurons", "cogmap"),
+}
+
+KEYS = {"name", "type", "source_modules", "forbidden_modules"}
+
+
+@pytest.mark.parametrize(
+    "arrow", [arrow for names in NEVER.items() for arrow in itertools.product(*names)], ids=" → ".join
+)
+def test_a_forbidden_import_has_its_contract(arrow: tuple[str, str]) -> None:
+    contracts = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["tool"]["importlinter"]["contracts"]
+    # Nothing but these keys: exceptions (`ignore_imports`, `allow_indirect_imports`) would be holes.
+    strict = [
+        contract for contract in contracts if contract.keys() <= KEYS and contract["type"] == "forbidden"
+    ]
+    assert any(
+        arrow[0] in contract["source_modules"] and arrow[1] in contract["forbidden_modules"]
+        for contract in strict
+    )
+
+
+def test_cogmap_stands_on_neurons_and_arena() -> None:
+    settings = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["tool"]["importlinter"]
+    assert settings.keys() == {"root_packages", "contracts"}
+    assert ["cogmap", "neurons | arena"] in [contract.get("layers") for contract in settings["contracts"]]
