@@ -3,7 +3,7 @@
 from cogmap import cells, manifold, navigation, plots
 from cogmap.activity import Activity
 from cogmap.cognitive_map import CognitiveMap
-from cogmap.errors import CogmapError
+from cogmap.errors import CogmapError, UnlikeArithmeticWarning
 from cogmap.manifold import BagOfWords, Betti, LandmarkIsomap, betti
 from cogmap.navigation import Localiser, VisualRoadmap
 from cogmap.scoring import score
@@ -18,6 +18,7 @@ __all__ = [
     "LandmarkIsomap",
     "Localiser",
     "Plan",
+    "UnlikeArithmeticWarning",
     "VisualRoadmap",
     "betti",
     "cells",

@@ -15,9 +15,9 @@ SMALL: dict[str, dict[str, Any]] = {
     "2_a_corridor_is_a_cylinder": {"VIEWS": 500},
     "3_a_room_is_a_solid_torus": {"VIEWS": 400},
     "4_where_am_i": {"VIEWS": 1500},
-    "5_cells_from_sight_and_smell": {"VIEWS": 2500, "CHARTS": 500},
-    "6_sweeping_cell_statistics": {"VIEWS": 2500, "NOISE": [0.1], "SEEDS": [0]},
-    "7_the_homology_of_emergent_maps": {"VIEWS": 2500, "CHARTS": 500, "LANDMARKS": (100, 50)},
+    "5_cells_from_sight_and_smell": {"VIEWS": 5000, "CHARTS": 1000},
+    "6_sweeping_cell_statistics": {"VIEWS": 5000, "NOISE": [0.1], "SEEDS": [0]},
+    "7_the_homology_of_emergent_maps": {"VIEWS": 5000, "CHARTS": 1000, "LANDMARKS": (100, 50)},
     "8_your_own_arena": {"MINUTES": 5, "CHARTS": 250},
 }
 
