@@ -1,34 +1,15 @@
-"""Maps that tests grow stand clear of every guard, so that no processor's rounding decides a test.
-
-A map whose guard is asked stands clear of it when its figure is farther from the bound than half of the
-bound's own distance from 1. It is soundly trusted when it stands clear above all, and soundly refused when it
-stands clear below one.
-"""
+"""Maps that tests grow stand clear of every guard, so that no processor's rounding decides a test."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
+from tests.guards import described, too_near
+
 GROWN = pytest.StashKey[set[str]]()
-BOUNDS = {"signs": 0.995, "phases": 0.999, "metric": 0.8}
-
-
-def _margin(figure: float, bound: float) -> float:
-    """How far a figure stands from its bound, in units of the bound's own distance from 1."""
-    return (figure - bound) / (1 - bound)
-
-
-def _is_clear(margins: list[float]) -> bool:
-    return all(margin >= 0.5 for margin in margins) or any(not margin > -0.5 for margin in margins)
-
-
-def _figures(layers: Any) -> dict[str, float]:
-    signs, phases = layers.agreement.tolist()
-    return {"signs": signs, "phases": phases, "metric": float(layers.gauge.foretold.min())}
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -51,14 +32,11 @@ def _watched(
     """Note what a guard is asked of, and whether it stands too near."""
 
     def ask(layers: Any) -> str:
-        figures = _figures(layers)
-        margins = {name: _margin(figures[name], BOUNDS[name]) for name in names}
-        if not all(math.isnan(margin) for margin in margins.values()):
-            told = ", ".join(f"{name} {figures[name]:.5f} ({margins[name]:+.2f})" for name in names)
-            line = f"{layers.epoch} views, {len(layers.charts)} charts: {told}"
+        line = described(layers, names)
+        if "nan" not in line:
             grown.add(line)
-            if not _is_clear(list(margins.values())):
-                near.append(line)
+        if too_near(layers, names):
+            near.append(line)
         return plain(layers)
 
     return ask
@@ -67,10 +45,11 @@ def _watched(
 @pytest.fixture(autouse=True)
 def _clear_of_guards(guards: list[str], request: pytest.FixtureRequest) -> Iterator[None]:
     """Fail a test that asks a guard of a map that rounding might carry over its bound."""
-    guards.clear()
     yield
-    if guards and request.node.get_closest_marker("near_guard") is None:
-        pytest.fail("a map stands too near a guard: " + "; ".join(dict.fromkeys(guards)))
+    near = "; ".join(dict.fromkeys(guards))
+    guards.clear()
+    if near and request.node.get_closest_marker("near_guard") is None:
+        pytest.fail(f"a map stands too near a guard: {near}")
 
 
 @pytest.hookimpl(trylast=True)
