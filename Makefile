@@ -3,7 +3,7 @@ PYTHON ?= python3
 OUT ?= demo
 BIN := .venv/bin
 
-.PHONY: demo test lint bench verify notebooks clean
+.PHONY: demo test lint bench verify portable notebooks clean
 
 demo: .venv/installed
 	$(BIN)/cogmap demo --out $(OUT)
@@ -22,6 +22,9 @@ bench: .venv/peers
 
 verify: .venv/peers
 	$(BIN)/python -m pytest -m full -rA
+
+portable: .venv/installed
+	$(BIN)/python -m pytest -m full -rA tests/verify/test_processors.py
 
 notebooks: .venv/installed
 	$(BIN)/jupyter execute --inplace --timeout=1800 notebooks/*.ipynb

@@ -12,6 +12,7 @@ from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.base import Motion
 from arena.recordings import storage
+from arena.recordings.origin import origin, unlike
 from arena.recordings.recording import Recording
 from arena.recordings.sharding import Writer, shards
 from arena.rooms.arena import Arena
@@ -69,7 +70,9 @@ def explore(
         Varies the walk and the noise of the nose and the camera, never the room.
     out
         Folder to stream to, 256 views at a time. The same call after a kill goes on where it stopped and ends
-        with the same bits; a recording that is whole is only opened. None keeps all in memory.
+        with the same bits, on every x86-64 processor with AVX2 and the same versions (a `Chemotaxis` only in
+        portable arithmetic: its way hangs on the last digit of a smell); a recording that is whole is only
+        opened. None keeps all in memory.
     progress
         Whether to show a bar on stderr.
 
@@ -105,7 +108,7 @@ def explore(
         "times": walk.times,
         "poses": walk.poses,
     }
-    attributes["walk"] = dict(walk.notes)
+    attributes |= {"walk": dict(walk.notes), "origin": origin()}
     views = len(walk.times)
     shape = (views, camera.height, camera.width, 3)
 
@@ -118,8 +121,10 @@ def explore(
         with storage.new_folder(path) as folder:
             storage.lay_out(folder, shape, columns, attributes)
     elif not _equal(begun.columns, columns):
+        there = unlike(begun.attributes.get("origin", {})) or "another version of this program"
         raise ArenaError(
-            f"{path} was begun by a program that walks or smells otherwise; remove it and start again"
+            f"{path} was begun by what walks or smells otherwise: {there}; go on with it where it was begun, "
+            "or remove it and start again"
         )
     missing = shards(views) if begun is None else begun.missing
     try:

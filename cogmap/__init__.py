@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cogmap import cells, evaluation, features, graph, navigation, plots, shape, testing
-    from cogmap.errors import CogmapError
+    from cogmap.errors import CogmapError, UnlikeArithmeticWarning
     from cogmap.evaluation.scoring import score
     from cogmap.features import BagOfWords
     from cogmap.map.activity import Activity
@@ -23,6 +23,7 @@ __all__ = [
     "LandmarkIsomap",
     "Localiser",
     "Plan",
+    "UnlikeArithmeticWarning",
     "VisualRoadmap",
     "betti",
     "cells",
@@ -46,6 +47,7 @@ _HOMES = {
     "LandmarkIsomap": "shape",
     "Localiser": "navigation",
     "Plan": "sweeps",
+    "UnlikeArithmeticWarning": "errors",
     "VisualRoadmap": "navigation",
     "betti": "shape",
     "score": "evaluation.scoring",

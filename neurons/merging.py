@@ -99,5 +99,6 @@ def _check_kin(network: Network, other: Network, stage: str) -> None:
             continue
         if not torch.equal(mine[name].nan_to_num(), its[name].nan_to_num()):
             raise NeuronsError(
-                f"these maps were not grown from the same charts: {name} differs; merge forks of one map"
+                f"these maps were not grown from the same charts: {name} differs; merge forks of one map, "
+                "brought to this stage by processors that calculate alike (see `cogmap portable`)"
             )

@@ -35,5 +35,7 @@ class Light(FrozenModel):
 
     def brightness(self, normals: Float[np.ndarray, "faces 3"]) -> Float[np.ndarray, " faces"]:
         """Give the share of its colour, in [0, 1], that a surface of each unit normal shows."""
-        lit: np.ndarray = (1 - self.strength) + self.strength * np.maximum(0, normals @ self.direction)
+        # no matrix product, which is rounded as the processor likes
+        towards = (normals * self.direction).sum(axis=1)
+        lit: np.ndarray = (1 - self.strength) + self.strength * np.maximum(0, towards)
         return lit

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 import numpy as np
@@ -97,11 +98,11 @@ class Box(FrozenModel):
     @property
     def outline(self) -> Float[np.ndarray, "corners 2"]:
         """The corners in m, counter-clockwise; the front lies between the first two."""
-        angle = np.deg2rad(self.angle_deg)
-        corners = 0.5 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * self.size
-        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        outline: np.ndarray = corners @ turn + self.center
-        return outline
+        angle = math.radians(self.angle_deg)
+        x, y = (0.5 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * self.size).T
+        # spelt out: a matrix product is rounded as the processor likes, and every pixel would hang on it
+        cos, sin = math.cos(angle), math.sin(angle)
+        return np.stack([x * cos - y * sin, x * sin + y * cos], axis=1) + self.center
 
     @property
     def sides(self) -> tuple[str, ...]:

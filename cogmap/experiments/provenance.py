@@ -1,4 +1,4 @@
-"""Provenance of a result: the command that repeats it, and the versions of everything it stood on."""
+"""Provenance of a result: the command that repeats it, the versions and the arithmetic it stood on."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from arena import Arena, gallery
+from cogmap.portable import arithmetic
 
 PROVENANCE = "about.json"
 ROOM = "arena.toml"
@@ -43,6 +44,7 @@ def write_provenance(folder: Path, words: tuple[str, ...], room: Arena | None, *
         "command": shlex.join(["cogmap", *command]),
         "different": {key: repr(value) for key, value in options.items() if key not in said},
         "versions": versions(),
+        "arithmetic": arithmetic(),
     }
     (folder / PROVENANCE).write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
 

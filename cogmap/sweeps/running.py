@@ -17,6 +17,7 @@ from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from cogmap.errors import CogmapError
 from cogmap.experiments.registry import EXPERIMENTS, Experiment, experiment
+from cogmap.portable import arithmetic
 from cogmap.sweeps.ledger import KEPT, MARK, Ledger, disk_errors, is_full_disk
 from cogmap.sweeps.points import Point
 from cogmap.sweeps.table import comparable
@@ -58,7 +59,7 @@ def do(task: Task) -> None:
     with disk_errors(ledger.folder), _alone, ledger.lock(point):
         known = ledger.read(point)
         if known is None or (task.again and "error" in known):
-            ledger.write(point, _outcome(task))
+            ledger.write(point, _outcome(task) | {"arithmetic": arithmetic()})
 
 
 def _outcome(task: Task) -> dict[str, Any]:

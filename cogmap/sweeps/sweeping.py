@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import shutil
+import warnings
 from pathlib import Path
 
 import pandas as pd
 from tqdm import tqdm
 
-from cogmap.errors import CogmapError
+from cogmap.errors import CogmapError, UnlikeArithmeticWarning
 from cogmap.experiments.provenance import write_provenance
 from cogmap.experiments.registry import EXPERIMENTS
 from cogmap.inputs import checked_count
@@ -38,7 +39,8 @@ def sweep(
 
     Each finished point is a file in `out`, so that after a kill the same call goes on and does none of them
     twice. A point that fails is put down with its error, and the others go on. The table is the same bit by
-    bit whoever does the points.
+    bit whatever the number of processes, and whoever does the points where all calculate alike: on
+    processors of one kind, or on any with portable arithmetic. Where they do not, a warning says so.
 
     Parameters
     ----------
@@ -84,7 +86,9 @@ def sweep(
                 doing = on_this_machine(left, workers) if scheduler is None else on_cluster(left, scheduler)
                 for _ in doing:
                     bar.update()
-        table = table_of(points, [_finished(ledger, point) for point in points])
+        records = [_finished(ledger, point) for point in points]
+        table = table_of(points, records)
+        _warn_of_unlike(records)
         _write(ledger, table, plan)
     return table
 
@@ -100,6 +104,18 @@ def _finished(ledger: Ledger, point: Point) -> Record:
             f"a point that was done has vanished from {ledger.folder}; give the same command again"
         )
     return record
+
+
+def _warn_of_unlike(records: list[Record]) -> None:
+    """Say so when points were done by processors that calculate differently."""
+    found = {record["arithmetic"] for record in records if "arithmetic" in record}
+    if len(found) > 1:
+        warnings.warn(
+            f"the points of this sweep were done in {len(found)} arithmetics ({', '.join(sorted(found))}) "
+            "and may differ by rounding; start the sweep and all workers with `cogmap portable`",
+            UnlikeArithmeticWarning,
+            stacklevel=3,
+        )
 
 
 def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:

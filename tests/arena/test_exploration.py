@@ -6,6 +6,7 @@ import sys
 import textwrap
 import time
 import tracemalloc
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -289,16 +290,21 @@ def test_another_recording_is_not_touched(
 
 
 def test_half_written_by_a_program_that_walked_otherwise(tmp_path: Path) -> None:
-    path = tmp_path / "rec.zarr"
     rec = go()
-    Recording(
-        views=rec.views, odours=rec.odours, times=rec.times + 1, poses=rec.poses, attributes=rec.attributes
-    ).save(path)
-    (path / "views" / "c" / "2" / "0" / "0" / "0").unlink()
-    before = snapshot(tmp_path)
-    with pytest.raises(ArenaError, match="otherwise"):
-        go(out=path)
-    assert snapshot(tmp_path) == before
+    for name, there, reason in [
+        ("same", {}, "another version of this program"),
+        ("older", {"pymunk": "6.0"}, f"pymunk 6.0 .here {version('pymunk')}.;"),
+    ]:
+        path = tmp_path / f"{name}.zarr"
+        attributes = {**rec.attributes, "origin": {**rec.attributes["origin"], **there}}
+        Recording(
+            views=rec.views, odours=rec.odours, times=rec.times + 1, poses=rec.poses, attributes=attributes
+        ).save(path)
+        (path / "views" / "c" / "2" / "0" / "0" / "0").unlink()
+        before = snapshot(tmp_path)
+        with pytest.raises(ArenaError, match=f"walks or smells otherwise: {reason}"):
+            go(out=path)
+        assert snapshot(tmp_path) == before
 
 
 def test_junk_in_the_way_is_not_touched(tmp_path: Path) -> None:

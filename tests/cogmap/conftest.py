@@ -5,7 +5,7 @@ import pytest
 from arena import Arena, Brownian, Camera, Recording, explore
 from cogmap import CognitiveMap
 
-VIEWS, CHARTS = 3000, 800
+VIEWS, CHARTS = 5000, 1000
 
 
 @pytest.fixture(scope="session")

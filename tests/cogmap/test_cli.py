@@ -58,8 +58,8 @@ def test_explore_learn_score(run, folder: Path, tmp_path: Path) -> None:
                    "--out", tmp_path / "fresh.zarr", "--json")  # fmt: skip
     assert explored[0] == 0
     assert json.loads(explored[1])["views"] == 400
-    assert run("learn", folder / "walk.zarr", "--out", tmp_path / "map", "--charts", 900)[0] == 0
-    assert CognitiveMap.load(tmp_path / "map").charts == 900
+    assert run("learn", folder / "walk.zarr", "--out", tmp_path / "map", "--charts", 1100)[0] == 0
+    assert CognitiveMap.load(tmp_path / "map").charts == 1100
     status, out, err = run(
         "score", tmp_path / "map", tmp_path / "fresh.zarr", "--train", folder / "walk.zarr", "--json"
     )
@@ -241,7 +241,7 @@ def test_export_writes_nwb(run, folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "walk.nwb"
     status, said, err = run("export", folder / "walk.zarr", folder / "map", "--out", out, "--json")
     assert status == 0, err
-    assert json.loads(said) == {"nwb": str(out), "views": 3000, "units": 210}
+    assert json.loads(said) == {"nwb": str(out), "views": 5000, "units": 210}
     refused(run("export", folder / "walk.zarr", folder / "map", "--out", out), "exists already")
     refused(run("export", folder / "blind.zarr", folder / "map", "--out", tmp_path / "x.nwb"), "no poses")
 

@@ -153,6 +153,7 @@ def test_a_coarse_map_says_so(walk: Recording) -> None:
         coarse.perceive(walk.views[:5])
 
 
+@pytest.mark.near_guard
 def test_a_coarse_map_adds_charts_until_they_agree(walk: Recording, tmp_path: Path) -> None:
     grown = CognitiveMap(charts=100, components=40, most_charts=1000).fit(walk.views, walk.odours)
     assert grown.trusted_, grown.reason_

@@ -1,6 +1,7 @@
 import errno
 import json
 import sys
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -10,9 +11,10 @@ import pandas as pd
 import pytest
 from filelock import FileLock
 
-from cogmap import CogmapError, Plan, cli, sweep
+from cogmap import CogmapError, Plan, UnlikeArithmeticWarning, cli, sweep
 from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.registry import EXPERIMENTS, Experiment
+from cogmap.portable import arithmetic
 from cogmap.sweeps import running
 from cogmap.sweeps.ledger import is_full_disk
 
@@ -104,6 +106,25 @@ def test_a_point_that_is_mended_loses_its_error(tmp_path: Path, monkeypatch: pyt
     table = sweep(UNLUCKY, tmp_path / "out", workers=1, retry_failed=True)
     assert table["error"].tolist() == ["", "", ""]
     assert table["by_charts.share"].tolist() == [1 / 12, 1 / 40, 1 / 40]
+
+
+def test_points_of_unlike_processors_are_noticed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    sweep(UNLUCKY, tmp_path / "out", workers=1)
+    first = min((tmp_path / "out" / "points").iterdir())
+    record = json.loads(first.read_text("utf-8"))
+    assert record["arithmetic"] == arithmetic()
+    first.write_text(json.dumps(record | {"arithmetic": "deadbeef"}), "utf-8")
+    with pytest.warns(UnlikeArithmeticWarning, match=r"done in 2 arithmetics \(.*deadbeef.*cogmap portable"):
+        sweep(UNLUCKY, tmp_path / "out", workers=1)
+    file = tmp_path / "unlucky.toml"
+    file.write_text(UNLUCKY.to_toml(), "utf-8")
+    monkeypatch.setattr(sys, "argv", ["cogmap", "sweep", str(file), "--out", str(tmp_path / "out")])
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        cli.main()
+    assert "cogmap: the points of this sweep were done in 2 arithmetics" in capsys.readouterr().err
 
 
 def test_another_folder_is_left_alone(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from cogmap.experiments.result import Result
 
 @pytest.fixture(scope="module")
 def result() -> Result:
-    return experiment("fusion", views=4000)
+    return experiment("fusion", views=5000)
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,74 @@
+"""Maps that tests grow stand clear of every guard, so that no processor's rounding decides a test."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from tests.guards import described, too_near
+
+GROWN = pytest.StashKey[set[str]]()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def guards(request: pytest.FixtureRequest) -> Iterator[list[str]]:
+    """What stands too near a bound, of all maps whose guards are asked."""
+    from neurons.network import Network  # noqa: PLC0415  imported once type checks are hooked in
+
+    grown = request.config.stash.setdefault(GROWN, set())
+    near: list[str] = []
+    asked = {"atlas_diagnosis": ("signs", "phases"), "metric_diagnosis": ("metric",)}
+    with pytest.MonkeyPatch.context() as patch:
+        for method, names in asked.items():
+            patch.setattr(Network, method, _watched(getattr(Network, method), names, grown, near))
+        yield near
+
+
+def _watched(
+    plain: Callable[[Any], str], names: tuple[str, ...], grown: set[str], near: list[str]
+) -> Callable[[Any], str]:
+    """Note what a guard is asked of, and whether it stands too near."""
+
+    def ask(network: Any) -> str:
+        line = described(network, names)
+        if "nan" not in line:
+            grown.add(line)
+        if too_near(network, names):
+            near.append(line)
+        return plain(network)
+
+    return ask
+
+
+@pytest.fixture(autouse=True)
+def _clear_of_guards(guards: list[str], request: pytest.FixtureRequest) -> Iterator[None]:
+    """Fail a test that asks a guard of a map that rounding might carry over its bound."""
+    yield
+    near = "; ".join(dict.fromkeys(guards))
+    guards.clear()
+    if near and request.node.get_closest_marker("near_guard") is None:
+        pytest.fail(f"a map stands too near a guard: {near}")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Hand what a worker has grown to whoever prints it."""
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["grown"] = sorted(session.config.stash.get(GROWN, set()))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """Gather what the workers have grown."""
+    node.config.stash.setdefault(GROWN, set()).update(getattr(node, "workeroutput", {}).get("grown", ()))
+
+
+def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
+    """Print every grown map with its distances from the guards, the nearest first."""
+    grown = config.stash.get(GROWN, set())
+    if grown:
+        terminalreporter.section("maps and their guards: figure (distance from its bound, 1 at best)")
+        for line in sorted(grown):
+            terminalreporter.write_line(line)

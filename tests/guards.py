@@ -1,0 +1,38 @@
+"""How far a map stands from the bounds that decide whether it is trusted.
+
+It stands clear of a bound when its figure is farther from it than half of the bound's own distance from 1. It
+is soundly trusted when it stands clear above all, and soundly refused when it stands clear below one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+BOUNDS = {"signs": 0.995, "phases": 0.999, "metric": 0.8}
+CLEAR = 0.5
+
+
+def figures(network: Any) -> dict[str, float]:
+    """What the guards judge by."""
+    signs, phases = network.agreement.tolist()
+    return {"signs": signs, "phases": phases, "metric": float(network.metric_map.cross_validated_r2.min())}
+
+
+def margin(name: str, figure: float) -> float:
+    """How far a figure stands from its bound, in units of the bound's own distance from 1."""
+    return (figure - BOUNDS[name]) / (1 - BOUNDS[name])
+
+
+def too_near(network: Any, names: Iterable[str]) -> bool:
+    """Whether rounding might carry the verdict of these guards over a bound; NaN is soundly refused."""
+    margins = [margin(name, figure) for name, figure in figures(network).items() if name in names]
+    trusted = all(one >= CLEAR for one in margins)
+    refused = any(not one > -CLEAR for one in margins)
+    return not (trusted or refused)
+
+
+def described(network: Any, names: Iterable[str]) -> str:
+    """One line of a map, its figures, and their margins in brackets."""
+    told = [f"{n} {x:.5f} ({margin(n, x):+.2f})" for n, x in figures(network).items() if n in names]
+    return f"{network.epoch} views, {len(network.charts)} charts: {', '.join(told)}"
