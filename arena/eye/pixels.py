@@ -7,12 +7,12 @@ to write an image of three-byte pixels column by column takes several times as l
 import typing
 
 import numpy as np
-from numba import njit
 
 from arena.eye.texture_sampling import in_blocks
+from arena.kernels import kernel
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def finish(
     rows: tuple,
@@ -36,7 +36,7 @@ def finish(
         quad[at, k] = backdrop[source, k]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def emit(quad: np.ndarray, c: int, count: int, sight: tuple, out: np.ndarray) -> None:
     """Copy up to four columns into the image."""
@@ -46,7 +46,7 @@ def emit(quad: np.ndarray, c: int, count: int, sight: tuple, out: np.ndarray) ->
                 out[r, c + q, k] = quad[q, 4 * r + k]
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def emit_words(quad: np.ndarray, c: int, sight: tuple, out: np.ndarray) -> None:
     """Copy four columns into the image, three words a row."""
@@ -60,7 +60,7 @@ def emit_words(quad: np.ndarray, c: int, sight: tuple, out: np.ndarray) -> None:
         out[r, at + two] = p2 >> g | p3 << b
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def fill(first: int, last: int, backdrop: np.ndarray, out: np.ndarray, words: np.ndarray) -> None:
     """Copy rows that are nothing but backdrop into the image."""

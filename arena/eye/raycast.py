@@ -12,7 +12,9 @@ import typing
 
 import numpy as np
 from jaxtyping import Float, Int32, Shaped
-from numba import njit, prange
+from numba import prange
+
+from arena.kernels import kernel
 
 NEAREST, FARTHEST = 1e-4, 1e6
 """Depths (m) that the eye tells apart."""
@@ -75,7 +77,7 @@ class Lens(typing.NamedTuple):
     panoramic: bool
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _cover_around(a: tuple, b: tuple, lens: Lens) -> tuple[float, float, float]:
     """First and last image coordinate of a face, and the last of what of it lies beyond the seam."""
@@ -85,7 +87,7 @@ def _cover_around(a: tuple, b: tuple, lens: Lens) -> tuple[float, float, float]:
     return (low, high, 0.0) if high - low <= 0.5 * lens.width else (high, float(lens.width), low)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _cover_ahead(a: tuple, b: tuple, lens: Lens) -> tuple[float, float, float]:
     far, near = (a, b) if a[0] > b[0] else (b, a)
@@ -97,7 +99,7 @@ def _cover_ahead(a: tuple, b: tuple, lens: Lens) -> tuple[float, float, float]:
     return min(xa, xb), max(xa, xb), 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray, span: np.ndarray) -> None:
     """Put the faces into the eye's frame and find what they cover."""
@@ -126,7 +128,7 @@ def _project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray
         span[f + len(faces), 0], span[f + len(faces), 1] = 0.0, beyond
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray, span: np.ndarray) -> tuple:
     """Project the faces, and list by columns which of them touch it.
@@ -152,7 +154,7 @@ def project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray,
     return first, listed
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def direction(x: float, lens: Lens) -> tuple[float, float]:
     """Direction (ahead, left) of image coordinate x; its part ahead is 1 in perspective."""
@@ -162,14 +164,14 @@ def direction(x: float, lens: Lens) -> tuple[float, float]:
     return 1.0, (0.5 * lens.width - x) / lens.focal
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def nearness(one: np.record, x: float) -> float:
     """1 / depth of a touching face at x."""
     return min(max(one.first + x * (one.last - one.first), 1.0 / FARTHEST), 1.0 / NEAREST)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def along(x: float, one: np.record, face: np.record, sight: np.record, rays: tuple) -> float:
     """How far along its material (m) a touching face is met at x."""
@@ -179,7 +181,7 @@ def along(x: float, one: np.record, face: np.record, sight: np.record, rays: tup
     return face.offset + min(max(where, 0.0), sight.length)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def touch(
     c: int,
@@ -205,7 +207,7 @@ def touch(
         one.stop = along(1.0, one, face, sight, rays)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _hidden(one: np.record, occluder: np.record, faces: np.ndarray, lens: Lens) -> bool:
     """Whether a face is behind another that fills the column and rises higher in the image."""
@@ -215,7 +217,7 @@ def _hidden(one: np.record, occluder: np.record, faces: np.ndarray, lens: Lens) 
     return near < before and near * rise <= before * skyline
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def split(low: int, high: int, faces: np.ndarray, lens: Lens, touches: np.ndarray, edges: np.ndarray) -> int:
     """Cut a column where a face in sight begins or ends; the number of parts.
@@ -247,7 +249,7 @@ def split(low: int, high: int, faces: np.ndarray, lens: Lens, touches: np.ndarra
     return parts
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def meet(
     x: float,
@@ -275,7 +277,7 @@ def meet(
     return met
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _middle(
     c: int,
@@ -295,7 +297,7 @@ def _middle(
     return meet(0.5, low, high, faces, sights, touches, hits)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _measure(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
     """Measure the distances from one pose."""
@@ -308,7 +310,7 @@ def _measure(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -
         out[c] = np.hypot(ahead, left) / hits[0].near if met > 0 else np.inf
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _name(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
     """Name the surface at the middle of every pixel of one view."""
@@ -336,7 +338,7 @@ def _name(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> N
             out[r, c] = CEILING if r + 0.5 < horizon else beneath
 
 
-@njit(cache=True)
+@kernel()
 @typing.no_type_check
 def unsound(poses: Poses) -> int:
     """Find the first pose that is not finite; −1 when all are."""
@@ -346,7 +348,7 @@ def unsound(poses: Poses) -> int:
     return -1
 
 
-@njit(parallel=True, cache=True, error_model="numpy")
+@kernel(parallel=True)
 @typing.no_type_check
 def measure(poses: Poses, faces: Faces, lens: Lens, out: Float[np.ndarray, "views width"]) -> None:
     """Write the distance (m) along each column's middle ray into `out`; infinity where nothing is met."""
@@ -354,7 +356,7 @@ def measure(poses: Poses, faces: Faces, lens: Lens, out: Float[np.ndarray, "view
         _measure(poses[i], faces, lens, out[i])
 
 
-@njit(parallel=True, cache=True, error_model="numpy")
+@kernel(parallel=True)
 @typing.no_type_check
 def identify(poses: Poses, faces: Faces, lens: Lens, out: Int32[np.ndarray, "views height width"]) -> None:
     """Write what is seen at the middle of each pixel into `out`; see `arena.eye.camera.Camera.identify`."""

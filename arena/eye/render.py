@@ -9,7 +9,7 @@ import typing
 
 import numpy as np
 from jaxtyping import Float, Int, UInt8, UInt32
-from numba import njit, prange
+from numba import prange
 
 from arena.eye.pixels import emit, emit_words, fill, finish
 from arena.eye.raycast import (
@@ -26,6 +26,7 @@ from arena.eye.raycast import (
     split,
     touch,
 )
+from arena.eye.scene import Scene
 from arena.eye.texture_sampling import (
     BLOCK,
     Ground,
@@ -36,31 +37,65 @@ from arena.eye.texture_sampling import (
     paint_wall,
     unroll,
 )
+from arena.kernels import kernel
 from arena.rooms.materials import LEVELS, TEXEL
 
 ROUNDS = np.float32(0.5)
 """What a column starts from, so that it is rounded when it is cut to whole grey levels."""
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+class Column(typing.NamedTuple):
+    """Where one column of the image looks; numbers only, which cost nothing to take out."""
+
+    eye: tuple
+    """Where the eye stands (m) and the direction in the room of the column's middle ray."""
+    rays: tuple
+    """Directions (ahead, left) at the column's two sides."""
+    rows: tuple
+    """The first row that is not backdrop, and the first below it that is again."""
+    behind: int
+    """Its column of the backdrop."""
+
+
+class Sight(typing.NamedTuple):
+    """What the eye has found of a room's faces."""
+
+    faces: Faces
+    projected: np.ndarray
+    """Of dtype `PROJECTED_FACE`, a row for each face."""
+    touches: np.ndarray
+    """Of dtype `COLUMN_SPAN`."""
+    hits: np.ndarray
+    """Of dtype `RAY_HIT`, for one part of a column."""
+
+
+class Brush(typing.NamedTuple):
+    """What one column is painted with, used again for each."""
+
+    strip: np.ndarray
+    """Texels of a wall up its height, averaged along what the column covers of it."""
+    texel: np.ndarray
+    """For each row the first texel of `strip` under it."""
+    mix: tuple
+    """For each row the weights of that texel and the next two."""
+    column: np.ndarray
+    """Red, green, blue and a spare number for each row."""
+
+
+@kernel(forceinline=True)
 @typing.no_type_check
 def _paint_face(
     rows: tuple,
     part: tuple,
     scale: float,
-    one: np.record,
-    face: np.record,
-    sight: np.record,
+    met: tuple,
     rays: tuple,
     lens: Lens,
-    texels: np.ndarray,
-    level_starts: np.ndarray,
-    strip: np.ndarray,
-    texel: np.ndarray,
-    mix: tuple,
-    column: np.ndarray,
+    scene: Scene,
+    brush: Brush,
 ) -> None:
     """Add a face to the rows between two image heights of a part of a column, `scale` pixels to a metre."""
+    one, face, sight = met
     gain = face.left_light if sight.aside > 0.0 else face.right_light
     stretch = one.start, one.stop
     if part != (0.0, 1.0):
@@ -76,77 +111,51 @@ def _paint_face(
         if layer == 1:
             step, v, level = 0.5 * step, 0.5 * v, level + 1
         up = max(int(v - bottom * step) - 1, 0), int(v - top * step) + 3
-        unroll(stretch, up, level, gain, face.start, texels, level_starts, strip)
-        paint_wall(rows, share, (v - up[0], step), strip, texel, mix, column)
+        unroll(stretch, up, level, gain, face.start, scene.texels, scene.level_starts, brush.strip)
+        paint_wall(rows, share, (v - up[0], step), brush.strip, brush.texel, brush.mix, brush.column)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _climb(
-    eye: tuple,
     part: tuple,
-    rows: tuple,
     met: int,
-    hits: np.ndarray,
-    touches: np.ndarray,
-    faces: np.ndarray,
-    sights: np.ndarray,
-    rays: tuple,
+    column: Column,
+    sight: Sight,
+    scene: Scene,
     lens: Lens,
-    floor: Ground,
-    texels: np.ndarray,
-    level_starts: np.ndarray,
     backdrop: np.ndarray,
-    behind: int,
-    strip: np.ndarray,
-    texel: np.ndarray,
-    mix: tuple,
-    column: np.ndarray,
+    brush: Brush,
 ) -> None:
     """Let the gaze climb one part of a column past the faces it meets."""
     weight = part[1] - part[0]
-    peak, gaze, horizon = float(rows[0]), float(rows[1]), 0.5 * lens.height
-    ground, colour = 0.0, floor
+    peak, gaze, horizon = float(column.rows[0]), float(column.rows[1]), 0.5 * lens.height
+    ground, colour = 0.0, scene.floor
     for i in range(met):
-        one, scale = touches[hits[i].touch], lens.focal * hits[i].near
-        face, sight = faces[one.face], sights[one.face]
+        one, scale = sight.touches[sight.hits[i].touch], lens.focal * sight.hits[i].near
+        face, projected = sight.faces[one.face], sight.projected[one.face]
         foot = max(horizon + scale * (lens.eye - ground), peak)
         if foot < gaze:
-            paint_ground(foot, gaze, weight, colour, eye, lens, texels, level_starts, column)
+            paint_ground(foot, gaze, weight, colour, column.eye, lens, scene.texels, scene.level_starts, brush.column)
             gaze = foot
-        if face.closed and sight.aside > 0.0:
-            ground, colour = 0.0, floor
+        if face.closed and projected.aside > 0.0:
+            ground, colour = 0.0, scene.floor
             continue
         top = max(horizon + scale * (lens.eye - face.height), peak)
         if top < gaze:
-            _paint_face(
-                (top, gaze),
-                part,
-                scale,
-                one,
-                face,
-                sight,
-                rays,
-                lens,
-                texels,
-                level_starts,
-                strip,
-                texel,
-                mix,
-                column,
-            )
+            _paint_face((top, gaze), part, scale, (one, face, projected), column.rays, lens, scene, brush)
             gaze = top
         if gaze <= peak:
             return
         if face.closed and face.height < lens.eye:
             ground, colour = face.height, Ground(face.red, face.green, face.blue, -1, 1.0)
     if gaze > horizon:
-        paint_ground(horizon, gaze, weight, colour, eye, lens, texels, level_starts, column)
+        paint_ground(horizon, gaze, weight, colour, column.eye, lens, scene.texels, scene.level_starts, brush.column)
         gaze = horizon
-    paint_backdrop(peak, gaze, weight, backdrop, behind, column)
+    paint_backdrop(peak, gaze, weight, backdrop, column.behind, brush.column)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _rows(low: int, high: int, faces: np.ndarray, lens: Lens, touches: np.ndarray) -> tuple[int, int]:
     """Which rows of a column are not backdrop."""
@@ -160,21 +169,19 @@ def _rows(low: int, high: int, faces: np.ndarray, lens: Lens, touches: np.ndarra
     return max(int(top), 0), min(int(np.ceil(bottom)), lens.height)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _paint(
     pose: np.ndarray,
-    faces: np.ndarray,
+    scene: Scene,
     lens: Lens,
-    floor: Ground,
-    texels: np.ndarray,
-    level_starts: np.ndarray,
     backdrop: np.ndarray,
     ray: np.ndarray,
     out: np.ndarray,
     words: np.ndarray,
 ) -> None:
     """Paint the view from one pose."""
+    faces = scene.faces
     sights, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
     hits, edges = np.empty(len(span), RAY_HIT), np.empty(2 * len(span) + 2)
     strip = np.zeros(4 * (int(faces["height"].max() / TEXEL) + BLOCK), np.float32)
@@ -182,13 +189,15 @@ def _paint(
     mix = np.empty(rows, np.float32), np.empty(rows, np.float32), np.empty(rows, np.float32)
     column, quad = np.empty(backdrop.shape[1], np.float32), np.empty((4, backdrop.shape[1]), np.uint8)
     quad_words, columns = quad.view(np.uint32), len(backdrop)
+    brush = Brush(strip, texel, mix, column)
     first, listed = project(pose, faces, lens, sights, span)
     touches, painted = np.empty(len(listed), COLUMN_SPAN), np.empty((lens.width, 2), np.int64)
+    seen = Sight(faces, sights, touches, hits)
     for c in range(lens.width):
         rays = (ray[c, 0], ray[c, 1]), (ray[c + 1, 0], ray[c + 1, 1])
         touch(c, first[c], first[c + 1], listed, rays, faces, sights, span, touches)
         painted[c] = _rows(first[c], first[c + 1], faces, lens, touches)
-    if floor.start >= 0:
+    if scene.floor.start >= 0:
         painted[:, 1] = lens.height
     sight = painted[:, 0].min(), painted[:, 1].max()
     fill(0, sight[0], backdrop, out, words)
@@ -201,32 +210,13 @@ def _paint(
         eye = pose[0], pose[1], cosine * ahead - sine * left, sine * ahead + cosine * left
         top, bottom = painted[c, 0], painted[c, 1]
         behind = c if columns > 1 else 0
+        where = Column(eye, rays, (top, bottom), behind)
         for n in range(in_blocks(4 * (bottom - top))):
             column[np.uint64(4 * top) + np.uint64(n)] = ROUNDS
         for p in range(split(low, high, faces, lens, touches, edges)):
             part = edges[p], edges[p + 1]
             met = meet(0.5 * (part[0] + part[1]), low, high, faces, sights, touches, hits)
-            _climb(
-                eye,
-                part,
-                (top, bottom),
-                met,
-                hits,
-                touches,
-                faces,
-                sights,
-                rays,
-                lens,
-                floor,
-                texels,
-                level_starts,
-                backdrop,
-                behind,
-                strip,
-                texel,
-                mix,
-                column,
-            )
+            _climb(part, met, where, seen, scene, lens, backdrop, brush)
         finish((top, bottom), sight, backdrop, behind, column, quad, c & 3)
         if c & 3 == 3 and len(words) > 0:
             emit_words(quad_words, c - 3, sight, words)
@@ -234,15 +224,12 @@ def _paint(
             emit(quad, c & ~3, (c & 3) + 1, sight, out)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def render_alone(
     poses: Poses,
-    faces: Faces,
+    scene: Scene,
     lens: Lens,
-    floor: Ground,
-    texels: UInt8[np.ndarray, " bytes"],
-    level_starts: Int[np.ndarray, "levels_along levels_up"],
     backdrop: UInt8[np.ndarray, "columns blocks"],
     ray: Float[np.ndarray, "width_and_one 2"],
     out: UInt8[np.ndarray, "views height width 3"],
@@ -250,18 +237,15 @@ def render_alone(
 ) -> None:
     """Do the work of `render` without threads, which take a while to start."""
     for i in range(len(poses)):
-        _paint(poses[i], faces, lens, floor, texels, level_starts, backdrop, ray, out[i], words[i])
+        _paint(poses[i], scene, lens, backdrop, ray, out[i], words[i])
 
 
-@njit(parallel=True, cache=True, error_model="numpy")
+@kernel(parallel=True)
 @typing.no_type_check
 def render(
     poses: Poses,
-    faces: Faces,
+    scene: Scene,
     lens: Lens,
-    floor: Ground,
-    texels: UInt8[np.ndarray, " bytes"],
-    level_starts: Int[np.ndarray, "levels_along levels_up"],
     backdrop: UInt8[np.ndarray, "columns blocks"],
     ray: Float[np.ndarray, "width_and_one 2"],
     out: UInt8[np.ndarray, "views height width 3"],
@@ -273,5 +257,8 @@ def render(
     world, as in `arena.eye.background`. `ray` is the direction (ahead, left) between columns. `words` is the
     memory of `out` in words of four bytes, or has no rows where a row is not made of whole words.
     """
+    faces, (red, green, blue, start, light), texels, level_starts = scene
     for i in prange(len(poses)):
-        _paint(poses[i], faces, lens, floor, texels, level_starts, backdrop, ray, out[i], words[i])
+        # Packed again here: numba hands no tuple within a tuple to its threads.
+        seen = Scene(faces, Ground(red, green, blue, start, light), texels, level_starts)
+        _paint(poses[i], seen, lens, backdrop, ray, out[i], words[i])

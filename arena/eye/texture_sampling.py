@@ -7,10 +7,10 @@ row is the mean over the area that the row covers there, so that the image chang
 import typing
 
 import numpy as np
-from numba import njit
 
 from arena.eye.raycast import Lens
 from arena.eye.simd import add_three
+from arena.kernels import kernel
 from arena.rooms.materials import LEVELS, TEXEL, TILE
 
 BLOCK = 128
@@ -31,21 +31,21 @@ class Ground(typing.NamedTuple):
     light: float
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def in_blocks(count: int) -> int:
     """Round a count of numbers up to blocks of 32."""
     return (count + 31) & ~31
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def fade_in(stretch: float) -> float:
     """How much of the next coarser level to mix in, so that none comes suddenly: all at 2 texels."""
     return min(max((stretch - _PURE) * _HASTE, 0.0), 1.0)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _blend(
     texels: np.ndarray,
@@ -75,7 +75,7 @@ def _blend(
             strip[to + k] = wa * np.float32(texels[a + k]) + wb * np.float32(texels[b + k])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _lie(middle: float, half: float, share: float, start: int, across: int, length: int) -> tuple:
     """Where the three columns of texels under a stretch start, and their weights."""
@@ -92,7 +92,7 @@ def _lie(middle: float, half: float, share: float, start: int, across: int, leng
     )
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def unroll(
     stretch: tuple,
@@ -130,7 +130,7 @@ def unroll(
         v += n // 4
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _weigh(low: np.float32, size: np.float32, share: np.float32) -> tuple:
     """Weights of the three texels under a stretch of one to two, and the first of them."""
@@ -142,7 +142,7 @@ def _weigh(low: np.float32, size: np.float32, share: np.float32) -> tuple:
     return texel, share * (np.float32(1.0) - rest), share * second, share * third
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def paint_wall(
     rows: tuple,
@@ -175,7 +175,7 @@ def paint_wall(
         add_three(strip, t[k], a[k], b[k], c[k], column, first + k)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _paint_textured_floor(
     top: float,
@@ -220,7 +220,7 @@ def _paint_textured_floor(
                         column[4 * r + k] += w * np.float32(texels[at + k])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def paint_ground(
     top: float,
@@ -244,7 +244,7 @@ def paint_ground(
         column[4 * r + 2] += share * np.float32(ground.blue)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def paint_backdrop(
     top: float, bottom: float, weight: float, backdrop: np.ndarray, behind: int, column: np.ndarray

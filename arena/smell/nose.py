@@ -6,10 +6,10 @@ from typing import Annotated
 
 import numpy as np
 from jaxtyping import Float, Float32
-from numba import njit
 from pydantic import Field
 
 from arena.errors import ArenaError
+from arena.kernels import kernel
 from arena.settings import Settings
 
 _FAINTEST, _STRONGEST = float(np.finfo(np.float32).tiny), float(np.finfo(np.float32).max)
@@ -91,7 +91,7 @@ class Sniffer:
         return smelt
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _smell(
     concentrations: np.ndarray,

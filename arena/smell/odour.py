@@ -8,11 +8,11 @@ from functools import cached_property, lru_cache
 import numpy as np
 import shapely
 from jaxtyping import Bool, Float, Int
-from numba import njit
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
 from arena.errors import ArenaError
+from arena.kernels import kernel
 
 FAINTEST = 1e-30
 """Concentration where no odour arrives: positive, so that its logarithm and its float32 exist."""
@@ -236,7 +236,7 @@ class OdourField:
         )
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _weights(f: float) -> tuple[float, float, float, float]:
     """Give the weights of the taps at −1, 0, 1, 2 for a fraction f of the way from 0 to 1 (Keys 1981)."""
@@ -248,7 +248,7 @@ def _weights(f: float) -> tuple[float, float, float, float]:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _slopes(f: float) -> tuple[float, float, float, float]:
     """Differentiate `_weights` by the fraction."""
@@ -260,7 +260,7 @@ def _slopes(f: float) -> tuple[float, float, float, float]:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _convolve(xy: np.ndarray, log: np.ndarray, reached: np.ndarray, box: np.ndarray, out: np.ndarray) -> int:
     """Fill out with concentrations and, if it has room, slopes; return a point out of bounds or −1."""
