@@ -24,11 +24,6 @@ Observation = dict[str, np.ndarray]
 Reward = Callable[[Observation, Observation], float]
 """Judges a step by what was sensed before and after it."""
 
-_BODY, _CAMERA, _NOSE = Disc(), Camera.panoramic(92, 15), Nose()
-_FLOAT32 = np.finfo(np.float32)
-_FRAME = (240, 480)
-"""Rows of a rendered frame, and most columns of the view in it."""
-
 
 class OdourClimbed(Settings):
     r"""Reward the climb of one odour as it is smelt, log c(after) − log c(before).
@@ -55,9 +50,6 @@ class OdourClimbed(Settings):
                 f"there is no odorant {self.odorant} to climb, the room has {len(after['odour'])} odour "
                 "sources; choose another one, another room or another reward"
             ) from None
-
-
-_CLIMB = OdourClimbed()
 
 
 class Explorer(gymnasium.Env[Observation, np.ndarray]):
@@ -99,11 +91,11 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         self,
         arena: Arena | str | Path,
         *,
-        camera: Eye = _CAMERA,
-        nose: Nose = _NOSE,
-        body: Disc = _BODY,
+        camera: Eye = Camera.panoramic(92, 15),
+        nose: Nose = Nose(),
+        body: Disc = Disc(),
         control: Literal["velocity", "wheels"] = "velocity",
-        reward: Reward = _CLIMB,
+        reward: Reward = OdourClimbed(),
         dt: float = 0.05,
         render_mode: Literal["rgb_array"] | None = None,
     ) -> None:
@@ -123,14 +115,14 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": max(1, round(1 / dt))}
         self.action_space = gymnasium.spaces.Box(-1, 1, (2,), np.float32)
-        odorants = len(self.arena.sources)
+        odorants, smelt = len(self.arena.sources), np.finfo(np.float32)
         self.observation_space = gymnasium.spaces.Dict(  # type: ignore[assignment]
             {
                 "view": gymnasium.spaces.Box(0, 255, (camera.height, camera.width, 3), np.uint8),
-                "odour": gymnasium.spaces.Box(_FLOAT32.tiny, _FLOAT32.max, (odorants,), np.float32),
+                "odour": gymnasium.spaces.Box(smelt.tiny, smelt.max, (odorants,), np.float32),
             }
         )
-        self._top = TopView(self.arena, _FRAME[0])
+        self._top = TopView(self.arena)
         self._drive: Drive | None = None
         self._now = np.zeros(1)
 
@@ -176,14 +168,16 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
             return None
         if self._drive is None:
             raise ArenaError("the animal is nowhere yet; call reset() before render()")
-        view, (rows, most) = self._sensed["view"], _FRAME
-        scale = min(rows / view.shape[0], most / view.shape[1])
+        view = self._sensed["view"]
+        top = self._top.draw(self._drive.pose, self.body.radius, np.array(self._trail))
+        rows = len(top)
+        # A strip is many times as wide as high: no more than two squares of the frame.
+        scale = min(rows / view.shape[0], 2 * rows / view.shape[1])
         size = max(1, round(scale * view.shape[1])), max(1, round(scale * view.shape[0]))
         shown = cv2.resize(view, size, interpolation=cv2.INTER_NEAREST if scale > 1 else cv2.INTER_AREA)
         frame = np.zeros((rows, size[0], 3), np.uint8)
         above = (rows - size[1]) // 2
         frame[above : above + size[1]] = shown
-        top = self._top.draw(self._drive.pose, self.body.radius, np.array(self._trail))
         return np.hstack([frame, top])
 
     def _sense(self, drive: Drive, *, touched: bool) -> tuple[Observation, dict[str, Any]]:

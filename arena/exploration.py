@@ -18,8 +18,6 @@ from arena.recordings.sharding import Writer, shards
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
 
-_BODY, _NOSE = Disc(), Nose()
-
 
 @runtime_checkable
 class Eye(Protocol):
@@ -51,8 +49,8 @@ def explore(
     motion: Motion,
     camera: Eye,
     *,
-    nose: Nose = _NOSE,
-    body: Disc = _BODY,
+    nose: Nose = Nose(),
+    body: Disc = Disc(),
     views: int | None = None,
     seed: int = 0,
     out: str | Path | None = None,

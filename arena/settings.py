@@ -9,9 +9,6 @@ from arena.errors import ArenaError
 _shortened = Repr()
 _shortened.maxstring = 60
 
-_IN_TOML = {"tuple_type": "Input should be a list", "model_type": "Input should be a table"}
-"""What pydantic calls by the names of Python."""
-
 
 class Settings(BaseModel):
     """A frozen set of named parameters that says in one sentence what is wrong with a bad one.
@@ -42,7 +39,9 @@ def first_error(error: ValidationError) -> str:
     keys = [str(key) if str(key).isprintable() else repr(key) for key in place]
     given = first["input"]
     shown = f" is {_shortened.repr(given)}" if _is_shown(given, first["type"]) else ""
-    wrong = _IN_TOML.get(first["type"], first["msg"].removeprefix("Value error, "))
+    # What pydantic calls by the names of Python.
+    in_toml = {"tuple_type": "Input should be a list", "model_type": "Input should be a table"}
+    wrong = in_toml.get(first["type"], first["msg"].removeprefix("Value error, "))
     return f"{'.'.join(keys) or 'the arena'}{shown}: {wrong}"
 
 

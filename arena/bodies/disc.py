@@ -14,8 +14,6 @@ from arena.settings import Settings
 TOLERANCE = 1e-3
 """How far (m) a start may reach beyond free space; a step never reaches beyond it by more than `_CLOSE`."""
 _CLOSE = 1e-6
-_PUSHES = 20
-_PARTS_A_RADIUS = 5
 
 Pose = tuple[float, float, float]
 """x and y in m, heading in rad."""
@@ -96,7 +94,7 @@ class Drive:
         else:
             self.turn, turn = _approach(self.turn, turn, self._turn_acceleration, dt)
         disc = self._disc
-        parts = max(1, math.ceil(_PARTS_A_RADIUS * abs(speed) * dt / self.body.radius))
+        parts = max(1, math.ceil(5 * abs(speed) * dt / self.body.radius))
         dt /= parts
         self.contact = None
         for _ in range(parts):
@@ -124,7 +122,8 @@ class Drive:
     def _push_out(self, dx: float, dy: float) -> None:
         self._overlaps = False
         x0, y0 = x, y = self._disc.position
-        for _ in range(_PUSHES):
+        # A corner takes a few pushes; what twenty do not free is a wedge.
+        for _ in range(20):
             wall = self._space.point_query_nearest((x, y), self.body.radius - _CLOSE, self._others)
             if wall is None:
                 break

@@ -20,9 +20,6 @@ from arena.settings import Settings
 Images = UInt8[np.ndarray, "views height width 3"]
 Poses = Float[np.ndarray, "views 3"]
 
-_FEW = 4
-"""Below this many views a thread takes longer to start than to work."""
-
 
 class Camera(Settings):
     """An upright camera looking along the body's heading, horizon in the middle row.
@@ -147,12 +144,12 @@ class Camera(Settings):
         if self.noise and rng is None:
             raise ArenaError(f"the camera has noise {self.noise:g}; give `rng`, a numpy.random.Generator")
         lens, ray = self._optics
-        faces, floor, texels, level_starts = arena.scene
-        sky = backdrop(lens, floor[:3], arena.ceiling, arena.zenith)
+        sky = backdrop(lens, arena.scene.floor[:3], arena.ceiling, arena.zenith)
         words = _words(out)
-        alone = len(poses) < _FEW or numba.get_num_threads() == 1
+        # For fewer than four views a thread takes longer to start than to work.
+        alone = len(poses) < 4 or numba.get_num_threads() == 1
         paint = render.render_alone if alone else render.render
-        paint(poses, faces, lens, floor, texels, level_starts, sky, ray, out, words)
+        paint(poses, arena.scene, lens, sky, ray, out, words)
         if rng is not None and self.noise:
             for image in out:
                 grain = rng.standard_normal(image.shape, dtype=np.float32)

@@ -7,27 +7,29 @@ to write an image of three-byte pixels column by column takes several times as l
 import typing
 
 import numpy as np
-from numba import njit
 
 from arena.eye.texture_sampling import in_blocks
+from arena.kernels import kernel
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def finish(
     rows: tuple,
-    sight: tuple,
+    visible: tuple,
     backdrop: np.ndarray,
     behind: int,
     column: np.ndarray,
     quad: np.ndarray,
     slot: int,
 ) -> None:
-    """Cut rows of a column to whole grey levels; the others in sight are backdrop."""
+    """Cut rows of a column to whole grey levels; the others that are visible are backdrop."""
+    # Unsigned for SIMD, as in `arena.eye.texture_sampling`.
     at, source = np.uint64(slot), np.uint64(behind)
-    for n in range(in_blocks(4 * (sight[1] - sight[0]))):
-        k = np.uint64(4 * sight[0]) + np.uint64(n)
+    for n in range(in_blocks(4 * (visible[1] - visible[0]))):
+        k = np.uint64(4 * visible[0]) + np.uint64(n)
         quad[at, k] = backdrop[source, k]
+    # By way of int32, the only whole numbers that SIMD turns float32 into.
     for n in range(in_blocks(4 * (rows[1] - rows[0]))):
         k = np.uint64(4 * rows[0]) + np.uint64(n)
         quad[at, k] = np.uint8(np.int32(column[k]))
@@ -36,34 +38,36 @@ def finish(
         quad[at, k] = backdrop[source, k]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
-def emit(quad: np.ndarray, c: int, count: int, sight: tuple, out: np.ndarray) -> None:
+def emit(quad: np.ndarray, c: int, count: int, visible: tuple, out: np.ndarray) -> None:
     """Copy up to four columns into the image."""
-    for r in range(sight[0], sight[1]):
+    for r in range(visible[0], visible[1]):
         for q in range(count):
             for k in range(3):
                 out[r, c + q, k] = quad[q, 4 * r + k]
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
-def emit_words(quad: np.ndarray, c: int, sight: tuple, out: np.ndarray) -> None:
+def emit_words(quad: np.ndarray, c: int, visible: tuple, out: np.ndarray) -> None:
     """Copy four columns into the image, three words a row."""
     at = np.uint32(c // 4 * 3)
     one, two = np.uint32(1), np.uint32(2)
     b, g, d = np.uint32(8), np.uint32(16), np.uint32(24)
-    for r in range(sight[0], sight[1]):
+    # Little-endian: red is the lowest byte. The spare byte is zero, so that | puts pixels side by side.
+    for r in range(visible[0], visible[1]):
         p0, p1, p2, p3 = quad[0, r], quad[1, r], quad[2, r], quad[3, r]
         out[r, at] = p0 | p1 << d
         out[r, at + one] = p1 >> b | p2 << g
         out[r, at + two] = p2 >> g | p3 << b
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def fill(first: int, last: int, backdrop: np.ndarray, out: np.ndarray, words: np.ndarray) -> None:
     """Copy rows that are nothing but backdrop into the image."""
+    # All columns alike: three words hold four pixels, and are the same along the row.
     if len(words) > 0 and len(backdrop) == 1:
         b, g, d = np.uint32(8), np.uint32(16), np.uint32(24)
         for r in range(first, last):

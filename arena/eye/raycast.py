@@ -4,22 +4,22 @@ The faces are projected once per view and listed by the image columns that they 
 wherever a face in sight begins or ends inside it; in each part the faces are met from near to far. Within a
 column all that is seen changes linearly.
 
-Kernels take plain arrays and tuples of numbers: numba counts references to an array each time it is taken out
-of a tuple, which costs more than the work done here.
+Depth is along the view's axis in perspective and along the level ray in a panorama. Faces are kept by
+1 / depth, which is linear in the image: no division is needed between the sides of a column.
 """
 
 import typing
 
 import numpy as np
 from jaxtyping import Float, Int32, Shaped
-from numba import njit, prange
+from numba import prange
 
-NEAREST, FARTHEST = 1e-4, 1e6
-"""Depths (m) that the eye tells apart."""
+from arena.kernels import kernel
+
+NEAREST = 1e-4
+"""Nothing is seen nearer than this (m): its image would grow beyond all bounds."""
 FLOOR, CEILING = -1, -2
 """What `identify` calls the two surfaces that are not of any face or solid."""
-_AWAY_FIRST = 1 + 1e-9
-"""Where two solids touch, the far face of one is met before the near face of the other."""
 
 FACE = np.dtype(
     [
@@ -75,29 +75,34 @@ class Lens(typing.NamedTuple):
     panoramic: bool
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _cover_around(a: tuple, b: tuple, lens: Lens) -> tuple[float, float, float]:
     """First and last image coordinate of a face, and the last of what of it lies beyond the seam."""
+    # Column 0 looks straight back, and what follows is clockwise from there.
     xa = lens.focal * (np.pi - np.arctan2(a[1], a[0]))
     xb = lens.focal * (np.pi - np.arctan2(b[1], b[0]))
     low, high = min(xa, xb), max(xa, xb)
+    # No straight face spans more than half a turn: what seems to goes the other way, across the seam.
     return (low, high, 0.0) if high - low <= 0.5 * lens.width else (high, float(lens.width), low)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _cover_ahead(a: tuple, b: tuple, lens: Lens) -> tuple[float, float, float]:
+    """First and last image coordinate of a face that is not all behind the eye."""
     far, near = (a, b) if a[0] > b[0] else (b, a)
     x, y = near
+    # What lies behind the eye would be projected to the other side, upside down.
     if x < NEAREST:
         x, y = NEAREST, y + (far[1] - y) * (NEAREST - x) / (far[0] - x)
+    # Cut to the image: the end of a face that is seen aslant may be projected any number of widths away.
     xa = min(max(0.5 * lens.width - lens.focal * far[1] / far[0], 0.0), float(lens.width))
     xb = min(max(0.5 * lens.width - lens.focal * y / x, 0.0), float(lens.width))
     return min(xa, xb), max(xa, xb), 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray, span: np.ndarray) -> None:
     """Put the faces into the eye's frame and find what they cover."""
@@ -108,13 +113,16 @@ def _project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray
         a = cosine * dx + sine * dy, cosine * dy - sine * dx
         dx, dy = face.x1 - pose[0], face.y1 - pose[1]
         b = cosine * dx + sine * dy, cosine * dy - sine * dx
+        # Empty, so that no column lists it, until it is known to be seen.
         span[f, 0] = span[f, 1] = span[f + len(faces), 0] = span[f + len(faces), 1] = 0.0
+        # Twice the area between eye and face; positive if the eye is to the left of the face.
         cross = b[1] * a[0] - b[0] * a[1]
         hidden = cross > 0.0 and face.closed and face.height >= lens.eye  # the back of a tall solid
         if hidden or (not lens.panoramic and a[0] < NEAREST and b[0] < NEAREST):
             continue
         length = np.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2)
         along, across = (b[0] - a[0]) / length, (b[1] - a[1]) / length
+        # Edge-on, 1 / depth would be 0 / 0; from 1e-12 m aside it is the same image.
         aside = cross / length if cross != 0.0 else 1e-12
         sight.ahead, sight.left = across / aside, -along / aside
         sight.at = -(a[0] * along + a[1] * across)
@@ -126,7 +134,7 @@ def _project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray
         span[f + len(faces), 0], span[f + len(faces), 1] = 0.0, beyond
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray, span: np.ndarray) -> tuple:
     """Project the faces, and list by columns which of them touch it.
@@ -136,6 +144,7 @@ def project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray,
     listed[first[c]:first[c + 1]].
     """
     _project(pose, faces, lens, sights, span)
+    # Count, sum up, fill: one array for all columns, in which those of a column lie together.
     first = np.zeros(lens.width + 1, np.int32)
     for row in range(len(span)):
         if span[row, 1] > span[row, 0]:
@@ -152,39 +161,41 @@ def project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray,
     return first, listed
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def direction(x: float, lens: Lens) -> tuple[float, float]:
     """Direction (ahead, left) of image coordinate x; its part ahead is 1 in perspective."""
+    # Pixel centres lie at half integers, and x = width / 2 looks straight ahead.
     if lens.panoramic:
         azimuth = np.pi - x / lens.focal
         return np.cos(azimuth), np.sin(azimuth)
     return 1.0, (0.5 * lens.width - x) / lens.focal
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def nearness(one: np.record, x: float) -> float:
     """1 / depth of a touching face at x."""
-    return min(max(one.first + x * (one.last - one.first), 1.0 / FARTHEST), 1.0 / NEAREST)
+    # Past the ends of the face the line goes on to 0 and below; 1000 km are as good as infinity.
+    return min(max(one.first + x * (one.last - one.first), 1e-6), 1.0 / NEAREST)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def along(x: float, one: np.record, face: np.record, sight: np.record, rays: tuple) -> float:
     """How far along its material (m) a touching face is met at x."""
     (a0, l0), (a1, l1) = rays
     ahead, left = a0 + x * (a1 - a0), l0 + x * (l1 - l0)
     where = sight.at + (sight.along * ahead + sight.across * left) / nearness(one, x)
+    # A column may be wider than what it sees of the face: beyond its ends is the material of a neighbour.
     return face.offset + min(max(where, 0.0), sight.length)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def touch(
     c: int,
-    low: int,
-    high: int,
+    within: tuple,
     listed: np.ndarray,
     rays: tuple,
     faces: np.ndarray,
@@ -192,9 +203,10 @@ def touch(
     span: np.ndarray,
     touches: np.ndarray,
 ) -> None:
-    """Fill touches[low:high] with the faces listed there as they lie in column c, between two rays."""
+    """Fill these `touches` with the faces listed there as they lie in column c, between two rays."""
     (a0, l0), (a1, l1) = rays
-    for k in range(low, high):
+    for k in range(within[0], within[1]):
+        # Rows past those of the faces are what lies of them beyond the seam.
         row, one = listed[k], touches[k]
         one.face = row if row < len(sights) else row - len(sights)
         face, sight = faces[one.face], sights[one.face]
@@ -205,36 +217,40 @@ def touch(
         one.stop = along(1.0, one, face, sight, rays)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _hidden(one: np.record, occluder: np.record, faces: np.ndarray, lens: Lens) -> bool:
     """Whether a face is behind another that fills the column and rises higher in the image."""
+    # A height is seen at focal times height over depth from the horizon: no division is needed to compare.
     middle = 0.5 * (one.begin + one.end)
     near, before = nearness(one, middle), nearness(occluder, middle)
     rise, skyline = faces[one.face].height - lens.eye, faces[occluder.face].height - lens.eye
     return near < before and near * rise <= before * skyline
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
-def split(low: int, high: int, faces: np.ndarray, lens: Lens, touches: np.ndarray, edges: np.ndarray) -> int:
+def split(within: tuple, faces: np.ndarray, lens: Lens, touches: np.ndarray, edges: np.ndarray) -> int:
     """Cut a column where a face in sight begins or ends; the number of parts.
 
-    The column's faces are touches[low:high], here as below.
+    The column's faces are touches[within[0]:within[1]], here as above and below.
     """
     occluder, skyline = -1, -np.inf  # the face that fills the column and rises highest
-    for k in range(low, high):
+    for k in range(within[0], within[1]):
         one = touches[k]
         rise = nearness(one, 0.5) * (faces[one.face].height - lens.eye)
         if one.begin == 0.0 and one.end == 1.0 and rise > skyline:
             occluder, skyline = k, rise
     edges[0], edges[1], parts = 0.0, 1.0, 1
-    for k in range(low, high):
+    for k in range(within[0], within[1]):
         one = touches[k]
+        # A face over the whole column has no edge in it; edges behind the occluder are not seen, and each
+        # part costs as much as a column.
         if one.begin == 0.0 and one.end == 1.0:
             continue
         if occluder >= 0 and _hidden(one, touches[occluder], faces, lens):
             continue
+        # Insertion, since a column has hardly ever more than three edges.
         for x in (one.begin, one.end):
             i = parts
             while edges[i - 1] > x:
@@ -247,12 +263,11 @@ def split(low: int, high: int, faces: np.ndarray, lens: Lens, touches: np.ndarra
     return parts
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def meet(
     x: float,
-    low: int,
-    high: int,
+    within: tuple,
     faces: np.ndarray,
     sights: np.ndarray,
     touches: np.ndarray,
@@ -260,12 +275,15 @@ def meet(
 ) -> int:
     """Find which touching faces the ray at x meets, from near to far; their number."""
     met = 0
-    for k in range(low, high):
+    for k in range(within[0], within[1]):
         one = touches[k]
         if one.begin <= x < one.end:
             near = nearness(one, x)
+            # Where two solids touch, the far face of one is met before the near face of the other, whatever
+            # the rounding: its top ends, and then the other begins.
             if faces[one.face].closed and sights[one.face].aside > 0.0:
-                near *= _AWAY_FIRST
+                near *= 1 + 1e-9
+            # Sorted as they come: for the few faces of a column nothing is faster.
             i = met
             while i > 0 and hits[i - 1].near < near:
                 hits[i].near, hits[i].touch = hits[i - 1].near, hits[i - 1].touch
@@ -275,12 +293,11 @@ def meet(
     return met
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _middle(
     c: int,
-    first: np.ndarray,
-    listed: np.ndarray,
+    columns: tuple,
     faces: np.ndarray,
     lens: Lens,
     sights: np.ndarray,
@@ -289,38 +306,42 @@ def _middle(
     hits: np.ndarray,
 ) -> int:
     """Find what the ray through the middle of column c meets, exactly."""
+    first, listed = columns
+    within = first[c], first[c + 1]
+    # Both sides of the column are its middle: interpolating between sides would be off by what lies between.
     ray = direction(c + 0.5, lens)
-    low, high = first[c], first[c + 1]
-    touch(c, low, high, listed, (ray, ray), faces, sights, span, touches)
-    return meet(0.5, low, high, faces, sights, touches, hits)
+    touch(c, within, listed, (ray, ray), faces, sights, span, touches)
+    return meet(0.5, within, faces, sights, touches, hits)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _measure(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
     """Measure the distances from one pose."""
     sights, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
-    first, listed = project(pose, faces, lens, sights, span)
-    touches, hits = np.empty(len(listed), COLUMN_SPAN), np.empty(len(span), RAY_HIT)
+    columns = project(pose, faces, lens, sights, span)
+    touches, hits = np.empty(len(columns[1]), COLUMN_SPAN), np.empty(len(span), RAY_HIT)
     for c in range(lens.width):
         ahead, left = direction(c + 0.5, lens)
-        met = _middle(c, first, listed, faces, lens, sights, span, touches, hits)
+        met = _middle(c, columns, faces, lens, sights, span, touches, hits)
+        # Depth along the axis times the length of the ray is the distance.
         out[c] = np.hypot(ahead, left) / hits[0].near if met > 0 else np.inf
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _name(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
     """Name the surface at the middle of every pixel of one view."""
     sights, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
-    first, listed = project(pose, faces, lens, sights, span)
-    touches, hits = np.empty(len(listed), COLUMN_SPAN), np.empty(len(span), RAY_HIT)
+    columns = project(pose, faces, lens, sights, span)
+    touches, hits = np.empty(len(columns[1]), COLUMN_SPAN), np.empty(len(span), RAY_HIT)
     horizon = 0.5 * lens.height
     for c in range(lens.width):
-        met = _middle(c, first, listed, faces, lens, sights, span, touches, hits)
+        met = _middle(c, columns, faces, lens, sights, span, touches, hits)
         row, ground, beneath = lens.height - 1, 0.0, FLOOR
         for i in range(met):
             f, scale = touches[hits[i].touch].face, lens.focal * hits[i].near
+            # A row is where its middle is; the gaze climbs as in `arena.eye.render`.
             while row >= 0 and row + 0.5 >= horizon + scale * (lens.eye - ground):
                 out[row, c] = beneath
                 row -= 1
@@ -332,11 +353,12 @@ def _name(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> N
                 row -= 1
             if faces[f].closed and faces[f].height < lens.eye:
                 ground, beneath = faces[f].height, len(faces) + faces[f].solid
+        # Past the last face: ground up to the horizon, as a room need not be closed.
         for r in range(row + 1):
             out[r, c] = CEILING if r + 0.5 < horizon else beneath
 
 
-@njit(cache=True)
+@kernel()
 @typing.no_type_check
 def unsound(poses: Poses) -> int:
     """Find the first pose that is not finite; −1 when all are."""
@@ -346,7 +368,7 @@ def unsound(poses: Poses) -> int:
     return -1
 
 
-@njit(parallel=True, cache=True, error_model="numpy")
+@kernel(parallel=True)
 @typing.no_type_check
 def measure(poses: Poses, faces: Faces, lens: Lens, out: Float[np.ndarray, "views width"]) -> None:
     """Write the distance (m) along each column's middle ray into `out`; infinity where nothing is met."""
@@ -354,7 +376,7 @@ def measure(poses: Poses, faces: Faces, lens: Lens, out: Float[np.ndarray, "view
         _measure(poses[i], faces, lens, out[i])
 
 
-@njit(parallel=True, cache=True, error_model="numpy")
+@kernel(parallel=True)
 @typing.no_type_check
 def identify(poses: Poses, faces: Faces, lens: Lens, out: Int32[np.ndarray, "views height width"]) -> None:
     """Write what is seen at the middle of each pixel into `out`; see `arena.eye.camera.Camera.identify`."""

@@ -12,8 +12,6 @@ from arena.rooms.light import Light
 from arena.rooms.materials import ROOMS, mean_colour, mip_maps
 from arena.rooms.surfaces import Surfaces
 
-_UP = np.array([[0.0, 0.0, 1.0]])
-
 
 class Scene(NamedTuple):
     """What there is to see in a room, under its light."""
@@ -46,7 +44,7 @@ def scene(surfaces: Surfaces, floor: str | tuple[int, int, int], light: Light | 
     right = np.column_stack([along[:, 1], -along[:, 0], np.zeros(len(along))])
     right /= np.linalg.norm(right, axis=1, keepdims=True)
     faces["left_light"], faces["right_light"] = _brightness(light, -right), _brightness(light, right)
-    above = float(_brightness(light, _UP)[0])
+    above = float(_brightness(light, np.array([[0.0, 0.0, 1.0]]))[0])
     top_colours = np.stack([mean_colour(name) for name in names])[surfaces.material]
     for solid in range(surfaces.solid.max() + 1):
         top_colours[surfaces.solid == solid] = top_colours[surfaces.solid == solid].mean(axis=0)

@@ -7,18 +7,14 @@ row is the mean over the area that the row covers there, so that the image chang
 import typing
 
 import numpy as np
-from numba import njit
 
 from arena.eye.raycast import Lens
 from arena.eye.simd import add_three
+from arena.kernels import kernel
 from arena.rooms.materials import LEVELS, TEXEL, TILE
 
 BLOCK = 128
 """Loops run over whole blocks of at most this many numbers: what remains after the last is slow, not SIMD."""
-_PER_METRE = 1.0 / TEXEL
-_PURE = 1.9
-"""Up to this many texels covered, one level is enough."""
-_HASTE = 1.0 / (2.0 - _PURE)
 
 
 class Ground(typing.NamedTuple):
@@ -31,21 +27,22 @@ class Ground(typing.NamedTuple):
     light: float
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def in_blocks(count: int) -> int:
     """Round a count of numbers up to blocks of 32."""
     return (count + 31) & ~31
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def fade_in(stretch: float) -> float:
     """How much of the next coarser level to mix in, so that none comes suddenly: all at 2 texels."""
-    return min(max((stretch - _PURE) * _HASTE, 0.0), 1.0)
+    # One level is enough up to 1.9 texels: a longer fade would have nearly every wall painted twice.
+    return min(max((stretch - 1.9) * (1.0 / (2.0 - 1.9)), 0.0), 1.0)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _blend(
     texels: np.ndarray,
@@ -57,13 +54,13 @@ def _blend(
     count: int,
     layer: int,
 ) -> None:
-    """Fill part of `strip` with a weighted sum of three stretches of texels; a second layer is added.
-
-    Unsigned indices allow SIMD. Where the third has no weight it is not read.
-    """
+    """Fill part of `strip` with a weighted sum of three stretches of texels; a second layer is added."""
+    # Unsigned: a signed index might count from the end, and to look at its sign each time rules SIMD out.
     a, b, c = np.uint64(starts[0] + skip), np.uint64(starts[1] + skip), np.uint64(starts[2] + skip)
     wa, wb, wc = weight
     to, length, keep = np.uint64(at), in_blocks(count), np.float32(layer)
+    # Two loops without a branch inside, since a third of no weight need not be read. The first layer takes
+    # what was there before times zero, so the strip must never have held an inf or NaN.
     if layer > 0 or wc > 0:
         for n in range(length):
             k = np.uint64(n)
@@ -75,7 +72,7 @@ def _blend(
             strip[to + k] = wa * np.float32(texels[a + k]) + wb * np.float32(texels[b + k])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _lie(middle: float, half: float, share: float, start: int, across: int, length: int) -> tuple:
     """Where the three columns of texels under a stretch start, and their weights."""
@@ -83,6 +80,7 @@ def _lie(middle: float, half: float, share: float, start: int, across: int, leng
     i = int(np.floor(low))
     share /= high - low
     second, third = min(high - i - 1.0, 1.0), max(0.0, high - i - 2.0)
+    # Tiles are powers of two wide, so that & repeats them, to the left of zero as well.
     a, b = start + length * (i & across - 1), start + length * (i + 1 & across - 1)
     c = start + length * (i + 2 & across - 1)
     return (a, b, c), (
@@ -92,7 +90,7 @@ def _lie(middle: float, half: float, share: float, start: int, across: int, leng
     )
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def unroll(
     stretch: tuple,
@@ -108,8 +106,9 @@ def unroll(
 
     It is measured in texels of the level at which it covers one or two, hence touches at most three.
     """
-    u0, u1 = min(stretch) * _PER_METRE, max(stretch) * _PER_METRE
+    u0, u1 = min(stretch) * (1.0 / TEXEL), max(stretch) * (1.0 / TEXEL)
     fine = 0
+    # Halving is exact: a level is left as smoothly as it was entered.
     while u1 - u0 > 2.0 and fine < LEVELS[0] - 2:
         u0, u1, fine = 0.5 * u0, 0.5 * u1, fine + 1
     fade, length = fade_in(u1 - u0), 4 * (TILE[1] >> level)
@@ -119,6 +118,7 @@ def unroll(
     starts, weight = _lie(middle, half, gain * (1.0 - fade), base, across, length)
     v, at = up[0], 0
     while v < up[1]:
+        # As far as the tile goes, so that a stretch of texels is read without wrapping.
         skip = 4 * v & length - 1
         n = min(4 * (up[1] - v), length - skip)
         _blend(texels, starts, skip, weight, strip, at, n, 0)
@@ -130,10 +130,11 @@ def unroll(
         v += n // 4
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def _weigh(low: np.float32, size: np.float32, share: np.float32) -> tuple:
     """Weights of the three texels under a stretch of one to two, and the first of them."""
+    # The lowest row of a wall seen from near would reach up to half a texel below it.
     low = max(low, np.float32(0.0))
     texel = np.int32(low)
     rest = low - np.float32(texel)
@@ -142,7 +143,7 @@ def _weigh(low: np.float32, size: np.float32, share: np.float32) -> tuple:
     return texel, share * (np.float32(1.0) - rest), share * second, share * third
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def paint_wall(
     rows: tuple,
@@ -160,11 +161,13 @@ def paint_wall(
     top, bottom = rows
     v, step = up
     first = int(top)
+    # float32 fills SIMD twice as well; on a strip of 128 texels it errs by 1e-5 of one.
     count = int(np.ceil(bottom)) - first
     size, stride = np.float32(max(step, 1.0)), np.float32(step)
     low, share = np.float32(v - (first + 0.5) * step) - np.float32(0.5) * size, np.float32(weight) / size
     t, (a, b, c) = texel, mix
     for k in range(in_blocks(count)):
+        # From the first row, not from the row before: errors do not add up, and rows do not wait.
         t[k], a[k], b[k], c[k] = _weigh(low - np.float32(k) * stride, size, share)
     for k in (0, count - 1):  # these may be covered in part
         above, below = max(top, float(first + k)), min(bottom, first + k + 1.0)
@@ -175,11 +178,10 @@ def paint_wall(
         add_three(strip, t[k], a[k], b[k], c[k], column, first + k)
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _paint_textured_floor(
-    top: float,
-    bottom: float,
+    rows: tuple,
     weight: float,
     floor: Ground,
     eye: tuple,
@@ -193,18 +195,22 @@ def _paint_textured_floor(
     `eye` is where the eye stands (m) and the direction in the room of the column's ray. Two levels are mixed,
     bilinear each, whose texels are about as large as the longer side of what the pixel covers.
     """
-    x, y, dx, dy = eye
+    (top, bottom), (x, y, dx, dy) = rows, eye
     length = np.sqrt(dx * dx + dy * dy)
     for r in range(int(top), int(np.ceil(bottom))):
         above, below = max(float(r), top), min(r + 1.0, bottom)
+        # At the horizon depth is infinite; no part of a row is taken to be nearer to it than a quarter row.
         depth = lens.focal * lens.eye / max(0.5 * (above + below) - 0.5 * lens.height, 0.25)
         side = depth * max(1.0, length * depth / lens.eye) / (lens.focal * TEXEL)
         share, level = np.float32(weight * (below - above) * floor.light), 0
+        # A pixel is depth / focal wide and, seen aslant, depth / eye times longer. Up to level 6: the fade
+        # takes the next, and 7 is the coarsest up the tile.
         while side >= 2.0 and level < 6:
             side, level = 0.5 * side, level + 1
         fade = min(max(side - 1.0, 0.0), 1.0)
         for one in range(2):
             part = share * np.float32(fade if one == 1 else 1.0 - fade)
+            # Half a texel less: a texel's colour is that of its middle.
             u, v = (
                 (x + depth * dx) / (TEXEL * (1 << level + one)) - 0.5,
                 (y + depth * dy) / (TEXEL * (1 << level + one)) - 0.5,
@@ -220,11 +226,10 @@ def _paint_textured_floor(
                         column[4 * r + k] += w * np.float32(texels[at + k])
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
 def paint_ground(
-    top: float,
-    bottom: float,
+    rows: tuple,
     weight: float,
     ground: Ground,
     eye: tuple,
@@ -235,8 +240,9 @@ def paint_ground(
 ) -> None:
     """Add a level surface to the rows between two image heights."""
     if ground.start >= 0:
-        _paint_textured_floor(top, bottom, weight, ground, eye, lens, texels, level_starts, column)
+        _paint_textured_floor(rows, weight, ground, eye, lens, texels, level_starts, column)
         return
+    top, bottom = rows
     for r in range(int(top), int(np.ceil(bottom))):
         share = np.float32(weight * (min(r + 1.0, bottom) - max(float(r), top)))
         column[4 * r] += share * np.float32(ground.red)
@@ -244,12 +250,11 @@ def paint_ground(
         column[4 * r + 2] += share * np.float32(ground.blue)
 
 
-@njit(cache=True, error_model="numpy", forceinline=True)
+@kernel(forceinline=True)
 @typing.no_type_check
-def paint_backdrop(
-    top: float, bottom: float, weight: float, backdrop: np.ndarray, behind: int, column: np.ndarray
-) -> None:
+def paint_backdrop(rows: tuple, weight: float, backdrop: np.ndarray, behind: int, column: np.ndarray) -> None:
     """Add the backdrop to the rows between two image heights."""
+    top, bottom = rows
     for r in range(int(top), int(np.ceil(bottom))):
         share = np.float32(weight * (min(r + 1.0, bottom) - max(float(r), top)))
         for c in range(3):

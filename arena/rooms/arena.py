@@ -27,13 +27,6 @@ from arena.rooms.surfaces import Surfaces, surfaces
 from arena.settings import first_error
 from arena.smell.odour import OdourField
 
-CLEARANCE = 0.01
-"""An odour source nearer than this (m) to a wall counts as inside it."""
-
-
-SPARSEST = 1e-4
-"""Share of its bounds below which free space takes too long to be found by chance."""
-
 Channel = Annotated[int, Field(strict=True, ge=0, le=255)]
 Colour = TypeAliasType("Colour", tuple[Channel, Channel, Channel])
 
@@ -85,7 +78,8 @@ class Arena(FrozenModel):
                     f"odour source {index} at {source.position} is outside the room, whose x min, y min, "
                     f"x max, y max are {self.bounds}; move it inside"
                 )
-            if self.obstacles.distance(shapely.Point(x, y)) < CLEARANCE:
+            # Nearer than a centimetre counts as inside.
+            if self.obstacles.distance(shapely.Point(x, y)) < 0.01:
                 raise ValueError(
                     f"odour source {index} at {source.position} is inside a wall or solid; "
                     "move it into free space"
@@ -188,7 +182,8 @@ class Arena(FrozenModel):
             )
         shapely.prepare(region)
         low, high = np.reshape(region.bounds, (2, 2))
-        if region.area < SPARSEST * np.prod(high - low):
+        # Less than a ten-thousandth of its bounds takes too long to be found by chance.
+        if region.area < 1e-4 * np.prod(high - low):
             raise ArenaError(
                 f"arena {self.name!r} has {region.area:.2g} m² of free space for a body of radius {radius:g} "
                 f"m, scattered over {high[0] - low[0]:g} by {high[1] - low[1]:g} m; bring its parts together"

@@ -6,13 +6,11 @@ from typing import Annotated
 
 import numpy as np
 from jaxtyping import Float, Float32
-from numba import njit
 from pydantic import Field
 
 from arena.errors import ArenaError
+from arena.kernels import kernel
 from arena.settings import Settings
-
-_FAINTEST, _STRONGEST = float(np.finfo(np.float32).tiny), float(np.finfo(np.float32).max)
 
 
 class Nose(Settings):
@@ -91,7 +89,7 @@ class Sniffer:
         return smelt
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _smell(
     concentrations: np.ndarray,
@@ -103,6 +101,7 @@ def _smell(
     noise, fluctuation, correlation_time = constants
     time, gain = state
     last = time[0]
+    # All is checked before the gain drifts: what is refused leaves the nose as it was.
     for view in range(len(times)):
         for odorant in range(len(gain)):
             if not 0 < concentrations[view, odorant] < np.inf:
@@ -112,8 +111,10 @@ def _smell(
         last = times[view]
     smelt = np.empty(concentrations.shape, np.float32)
     for view in range(len(times)):
+        # Without fluctuation no second number was drawn: a draw more would change all that follow.
         if normals.shape[1] == 2:
             lapse = (times[view] - time[0]) / correlation_time
+            # 1 - exp(-x) would lose its digits for views much closer than the correlation time.
             memory, innovation = math.exp(-lapse), math.sqrt(-math.expm1(-2 * lapse))
             for odorant in range(len(gain)):
                 gain[odorant] = memory * gain[odorant] + fluctuation * innovation * normals[view, 1, odorant]
@@ -121,5 +122,6 @@ def _smell(
         for odorant in range(len(gain)):
             log_gain = noise * normals[view, 0, odorant] + gain[odorant]
             scent = concentrations[view, odorant] * math.exp(log_gain)
-            smelt[view, odorant] = min(max(scent, _FAINTEST), _STRONGEST)
+            # The smallest normal and the largest number of float32: its logarithm exists.
+            smelt[view, odorant] = min(max(scent, 1.1754943508222875e-38), 3.4028234663852886e38)
     return smelt

@@ -8,16 +8,14 @@ from functools import cached_property, lru_cache
 import numpy as np
 import shapely
 from jaxtyping import Bool, Float, Int
-from numba import njit
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
 from arena.errors import ArenaError
+from arena.kernels import kernel
 
 FAINTEST = 1e-30
 """Concentration where no odour arrives: positive, so that its logarithm and its float32 exist."""
-MOST_CELLS = 250_000
-"""Above this the factorisation takes more than a few seconds and a gigabyte."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -118,10 +116,11 @@ class OdourField:
     def _shape(self) -> tuple[int, int]:
         extent = np.subtract(self.bounds[2:], self.bounds[:2])
         nx, ny = np.maximum(1, np.rint(extent / self.cell))
-        if nx * ny > MOST_CELLS:
+        # Above this the factorisation takes more than a few seconds and a gigabyte.
+        if nx * ny > (most := 250_000):
             raise ArenaError(
                 f"a room of {extent[0]:g} by {extent[1]:g} m needs {nx * ny:.3g} odour cells of "
-                f"{self.cell:g} m, more than {MOST_CELLS}; make the room smaller"
+                f"{self.cell:g} m, more than {most}; make the room smaller"
             )
         return int(nx), int(ny)
 
@@ -236,10 +235,11 @@ class OdourField:
         )
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _weights(f: float) -> tuple[float, float, float, float]:
     """Give the weights of the taps at −1, 0, 1, 2 for a fraction f of the way from 0 to 1 (Keys 1981)."""
+    # His a = -1/2, the only one with which the error falls as the cube of the cell.
     return (
         0.5 * f * (f * (2 - f) - 1),
         0.5 * (f * f * (3 * f - 5) + 2),
@@ -248,7 +248,7 @@ def _weights(f: float) -> tuple[float, float, float, float]:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _slopes(f: float) -> tuple[float, float, float, float]:
     """Differentiate `_weights` by the fraction."""
@@ -260,7 +260,7 @@ def _slopes(f: float) -> tuple[float, float, float, float]:
     )
 
 
-@njit(cache=True, error_model="numpy")
+@kernel()
 @typing.no_type_check
 def _convolve(xy: np.ndarray, log: np.ndarray, reached: np.ndarray, box: np.ndarray, out: np.ndarray) -> int:
     """Fill out with concentrations and, if it has room, slopes; return a point out of bounds or −1."""
@@ -271,16 +271,21 @@ def _convolve(xy: np.ndarray, log: np.ndarray, reached: np.ndarray, box: np.ndar
         if not (box[0] <= x <= box[2] and box[1] <= y <= box[3]):
             return p
         x, y = (x - box[0]) / step_x, (y - box[1]) / step_y
+        # On the far border lies the cell beyond the last.
         cell_x, cell_y = min(int(x), nx - 1), min(int(y), ny - 1)
+        # Values are at the middles of cells, and `log` has two more at each side: tap i - 1 of the room is
+        # row i + 1 of `log`, and the first of four.
         i, j = int(x + 0.5), int(y + 0.5)
         f, g = x + 0.5 - i, y + 0.5 - j
         across, up = _weights(f), _weights(g)
         slope_across, slope_up = _slopes(f), _slopes(g)
         for odorant in range(odorants):
+            # Where nothing arrives the logarithm would be minus infinity, and there is no slope.
             if not reached[cell_x, cell_y, odorant]:
                 out[p, odorant] = 0.0
                 out[p, odorant, 0] = FAINTEST
                 continue
+            # In logarithms: an odour falls exponentially, and an overshoot never makes it negative.
             value, by_x, by_y = 0.0, 0.0, 0.0
             for a in range(4):
                 for b in range(4):

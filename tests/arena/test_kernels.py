@@ -1,0 +1,175 @@
+import importlib
+import os
+import pkgutil
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numba import config
+from numba.core.dispatcher import Dispatcher
+
+import arena
+from arena import kernels
+from arena.eye.camera import Camera
+from arena.kernels import cache_folder, kernel
+from arena.rooms.arena import Arena
+
+PACKAGE = Path(arena.__file__).parent
+SOURCES = ["kernels.py", "eye/eye.py", "smell/smell.py", "rooms/deeper/rooms.py"]
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A package of four files, for a user whose cache is beside it."""
+    monkeypatch.setattr(config, "CACHE_DIR", "")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "user"))
+    for name in SOURCES:
+        file = tmp_path / "package" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(name)
+    return tmp_path / "package"
+
+
+def bar(folder: Path) -> None:
+    """Let nobody write here, not even the superuser: it is no folder."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    folder.touch()
+
+
+def test_the_cache_is_beside_the_package_and_stays_there(package: Path) -> None:
+    folder = cache_folder(package)
+    assert folder is not None
+    assert folder.is_dir()
+    assert folder.parent == package / "__pycache__"
+    assert cache_folder(package) == folder
+    assert not list(folder.iterdir())
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_an_edit_leads_to_another_folder_in_place_of_the_first(package: Path, name: str) -> None:
+    before = cache_folder(package)
+    assert before is not None
+    (before / "kernel.nbc").touch()
+    (stranger := before.with_name("kernels-0-0")).mkdir()
+    (package / name).write_text("edited")
+    after = cache_folder(package)
+    assert after is not None
+    assert set(before.parent.iterdir()) == {after, stranger}
+    assert after != before
+
+
+def test_the_user_chooses_first_and_has_a_cache_of_their_own(
+    package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bar(package / "__pycache__")
+    folder = cache_folder(package)
+    assert folder is not None
+    assert folder.parent == tmp_path / "user" / "cogmap"
+    monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path / "chosen"))
+    folder = cache_folder(package)
+    assert folder is not None
+    assert folder.parent == tmp_path / "chosen"
+
+
+def test_two_installations_keep_their_kernels_apart(package: Path) -> None:
+    other = package.with_name("other")
+    shutil.copytree(package, other)
+    (other / "eye" / "eye.py").write_text("of another version")
+    for root in (package, other):
+        bar(root / "__pycache__")
+    first = cache_folder(package)
+    assert first is not None
+    assert cache_folder(other) not in (None, first)
+    assert first.is_dir()
+
+
+@pytest.mark.parametrize("homeless", [False, True])
+def test_no_cache_where_nothing_can_be_written(
+    package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, homeless: bool
+) -> None:
+    bar(package / "__pycache__")
+    bar(tmp_path / "user")
+    if homeless:
+        monkeypatch.delenv("XDG_CACHE_HOME")
+        monkeypatch.setattr(os.path, "expanduser", lambda path: path)
+    monkeypatch.chdir(tmp_path)
+    assert cache_folder(package) is None
+    assert {path.name for path in tmp_path.iterdir()} == {"package", "user"}
+
+
+def test_every_kernel_is_in_the_folder_and_its_source_in_the_hash() -> None:
+    names = [module.name for module in pkgutil.walk_packages(arena.__path__, "arena.")]
+    found = {
+        value
+        for name in names
+        for value in vars(importlib.import_module(name)).values()
+        if isinstance(value, Dispatcher)
+    }
+    assert len(found) > 25
+    hashed = {file for part in ("eye", "smell", "rooms") for file in (PACKAGE / part).rglob("*.py")}
+    assert {Path(one.py_func.__code__.co_filename) for one in found} <= hashed
+    assert all(str(kernels._folder) in str(one.stats.cache_path) for one in found)
+
+
+def test_a_kernel_divides_by_zero_and_leaves_the_setting_of_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kernels, "_folder", None)
+    monkeypatch.setattr(config, "CACHE_DIR", "of others")
+
+    @kernel()
+    def half(x: float) -> float:
+        return 1.0 / x
+
+    assert half(0.0) == np.inf
+    assert half.stats.cache_path is None  # type: ignore[attr-defined]
+    assert config.CACHE_DIR == "of others"
+
+
+LOOK = """
+import sys
+import numpy as np
+from arena import Arena, Camera, Nose
+from arena.kernels import _folder
+room, pose = Arena.load("furnished"), np.array([(0.3, -0.2, 1.0)])
+sys.stdout.buffer.write(Camera.panoramic(36, 12).render(room, pose).tobytes())
+Nose().smell(room.odours.concentration(pose[:, :2]), np.zeros(1), np.random.default_rng(0))
+print(_folder, end="", file=sys.stderr)
+"""
+
+
+def test_an_edit_shows_at_once_and_nothing_need_be_writable(tmp_path: Path) -> None:
+    copy = tmp_path / "arena"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    helper = copy / "eye" / "texture_sampling.py"
+    source = helper.read_text(encoding="utf-8")
+    settings = {
+        key: os.environ[key] for key in os.environ if key not in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME")
+    }
+    # Compiled without optimising, in a third of the time.
+    settings |= {"PYTHONPATH": str(tmp_path), "HOME": "/dev/null", "NUMBA_OPT": "0"}
+
+    def look() -> tuple[bytes, str]:
+        run = subprocess.run(
+            [sys.executable, "-c", LOOK], cwd=tmp_path, env=settings, capture_output=True, check=False
+        )
+        assert run.returncode == 0, run.stderr.decode()
+        return run.stdout, run.stderr.decode()
+
+    before, folder = look()
+    view = Camera.panoramic(36, 12).render(Arena.load("furnished"), np.array([(0.3, -0.2, 1.0)]))
+    assert before == view.tobytes()
+    assert list((copy / "__pycache__").glob("kernels-*")) == [Path(folder)]
+    # Inlined into kernels of another file, which stays as it is.
+    edited = source.replace("np.float32(share * second)", "np.float32(0.5 * share * second)")
+    assert edited != source
+    helper.write_text(edited, encoding="utf-8")
+    after, _ = look()
+    assert after != before
+    helper.write_text(source, encoding="utf-8")
+    shutil.rmtree(copy / "__pycache__")
+    (copy / "__pycache__").touch()
+    for path in (copy, *copy.rglob("*")):
+        path.chmod(path.stat().st_mode & ~0o222)
+    assert look() == (before, "None")
