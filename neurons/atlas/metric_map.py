@@ -95,10 +95,6 @@ class MetricMap(nn.Module):
         turn = torch.atan2(share @ self.offsets.sin(), share @ self.offsets.cos())
         return MetricReading(patches @ self.positions, turn)
 
-    def break_sequence(self) -> None:
-        """Forget the last views: the next one does not follow them."""
-        self.recent.fill_(torch.nan)
-
     def partial_fit(
         self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"], headings: Float[Tensor, "views"]
     ) -> None:

@@ -158,7 +158,7 @@ def test_sums_of_two_walks_add_up_when_a_jump_is_told(cells: PlaceCells) -> None
     one, other = (Walk(way, torch.zeros(len(way)), smell(way)) for way in (along, along.flip(0)))
     apart = [learn(cells, each, solve=False) for each in (one, other)]
     both = learn(cells, one, solve=False)
-    both.break_sequence()
+    both.recent.fill_(torch.nan)
     both.partial_fit(cells, other.odour, other.heading - off(other.place))
     for name in ("spread", "ahead", "shared", "counted", "seen"):
         total = sum(getattr(metric_map, name) for metric_map in apart)
