@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import torch
 from jaxtyping import Float
@@ -24,8 +25,8 @@ class Network(Circuit):
 
     Parameters
     ----------
-    features, odorants, charts, most_charts, components, place_cells, heading_cells, generator
-        As for `neurons.circuit.Circuit`, as are the two bounds of the guard.
+    features, odorants, **circuit
+        As for `neurons.circuit.Circuit`.
     epoch
         Views in an epoch, the unit of the critical periods.
     stages
@@ -40,29 +41,11 @@ class Network(Circuit):
         features: int,
         odorants: int,
         *,
-        charts: int,
-        most_charts: int,
-        components: int,
-        place_cells: int,
-        heading_cells: int,
         epoch: int,
-        generator: torch.Generator,
         stages: Sequence[Stage] = STAGES,
-        least_eigenvalue: float = 0.999,
-        least_sign_agreement: float = 0.995,
+        **circuit: Any,
     ) -> None:
-        super().__init__(
-            features,
-            odorants,
-            charts=charts,
-            most_charts=most_charts,
-            components=components,
-            place_cells=place_cells,
-            heading_cells=heading_cells,
-            generator=generator,
-            least_eigenvalue=least_eigenvalue,
-            least_sign_agreement=least_sign_agreement,
-        )
+        super().__init__(features, odorants, **circuit)
         self.epoch = epoch
         self.stages = tuple(stages)
         self.register_buffer("views_seen", torch.zeros((), dtype=torch.int64))

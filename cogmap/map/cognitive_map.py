@@ -6,6 +6,8 @@ import time
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from copy import copy
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -174,8 +176,7 @@ class CognitiveMap:
             In a stage in which units compete for views, so that learning depends on their order.
         """
         self._check_grown()
-        other = CognitiveMap(**self._settings())
-        other._retina, other.view_shape_, other.odorants_ = self._retina, self.view_shape_, self.odorants_
+        other: CognitiveMap = copy(self)
         other.seconds_ = {}
         with one_thread(), _at_the_edge():
             other._network = forked(self._network)
@@ -301,15 +302,7 @@ class CognitiveMap:
         return loaded
 
     def _settings(self) -> dict[str, Any]:
-        return {
-            "charts": self.charts,
-            "components": self.components,
-            "most_charts": self.most_charts,
-            "place_cells": self.place_cells,
-            "heading_cells": self.heading_cells,
-            "epoch": self.epoch,
-            "seed": self.seed,
-        }
+        return {name: getattr(self, name) for name in signature(CognitiveMap).parameters}
 
     def _begin(
         self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, charts: int | None = None

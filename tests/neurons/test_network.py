@@ -57,21 +57,17 @@ def test_each_layer_learns_in_its_own_period_and_is_then_fixed(network: Network)
         assert all(name.startswith(own[stage.name]) for name in changed - {"views_seen"})
 
 
-@pytest.mark.parametrize(
-    ("signs", "phases", "said"),
-    [
-        (1.0, 0.9, "too coarse"),
-        (0.9, 0.9999, "heading axes"),
-        (torch.nan, torch.nan, "no loop"),
-        (1.0, 0.9999, ""),
-    ],
-)
-def test_complaints(network: Network, signs: float, phases: float, said: str) -> None:
-    network.views_seen.fill_(network.epochs * EPOCH)
-    network.agreement = torch.tensor([signs, phases])
-    reason = network.diagnosis()
-    assert said in reason
-    assert bool(reason) == bool(said)
+def test_an_unfinished_network_is_not_to_be_trusted(network: Network) -> None:
+    network.agreement = torch.tensor([1.0, 0.9999])
+    for stage in STAGES[:-1]:
+        network.views_seen.fill_(network.begins(stage.name))
+        assert f"{stage.name!r} stage" in network.diagnosis()
+        assert f"{stage.name!r} stage" in network.metric_diagnosis()
+    network.views_seen.fill_(network.begins(STAGES[-1].name))
+    assert not network.diagnosis()
+    assert network.metric_diagnosis() == network.metric_map.diagnosis()
+    network.agreement = torch.tensor([1.0, 0.99])
+    assert network.diagnosis() == network.atlas_diagnosis()
 
 
 @pytest.mark.parametrize(("most", "charts"), [(100, 100), (500, 120), (60, 60)])

@@ -9,7 +9,7 @@ from neurons.circuit import Circuit
 from neurons.errors import NeuronsError
 from neurons.merging import forked, merge
 from neurons.network import Network
-from neurons.stages import STAGES, AfferentStage, Batch, ChartStage, CodeStage, Stage
+from neurons.stages import STAGES, AfferentStage, Batch, ChartStage, CodeStage, OlfactionStage, Stage
 
 EPOCH = 200
 
@@ -183,6 +183,17 @@ def test_fewer_and_fewer_charts_learn_from_a_view(
     assert (asked[0], asked[-1]) == winners
     assert asked == sorted(asked, reverse=True)
     assert asked[2] == round((winners[0] * winners[1]) ** 0.5)
+
+
+def test_the_nearest_charts_learn_the_smell_of_a_view(toy: Network) -> None:
+    for stage, winners in ((OlfactionStage(), 16), (OlfactionStage(winners=3), 3)):
+        learner = deepcopy(toy)
+        learner.olfaction.gram.zero_()
+        learner.readout.spacing.fill_(1e3)
+        strips, smells = stream(1, 0)
+        stage.learn(learner, Batch(strips, smells, progress=0.5, window=200.0))
+        nearest = torch.cdist(learner.code(strips), learner.charts.centres).argsort()[0, :winners]
+        assert learner.olfaction.gram[:, 0, 0].nonzero().flatten().tolist() == sorted(nearest.tolist())
 
 
 def test_progress_runs_from_the_first_view_of_a_stage_to_its_last() -> None:
