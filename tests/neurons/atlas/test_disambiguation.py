@@ -52,14 +52,14 @@ def test_a_place_that_is_covered_already_is_left_to_the_others(charts: tuple[Ten
 
 
 @pytest.mark.parametrize(
-    ("weak", "rival", "places"), [(0.5, 0.12, 2), (0.1, 0.12, 1), (0.5, 0.6, 1), (0.1, 0.05, 2)]
+    ("weak", "rival", "places"), [(0.5, 0.12, 2), (0.17, 0.12, 1), (0.5, 0.6, 1), (0.17, 0.05, 2)]
 )
 def test_a_faint_second_place_is_none(
     charts: tuple[Tensor, Tensor, Tensor], weak: float, rival: float, places: int
 ) -> None:
     place, heading, edges = charts
     rates = bump(place, FIRST) + weak * bump(place, SECOND)
-    kept = place_branches(rates[:, None], heading, edges, active=0.03, rival=rival)
+    kept = place_branches(rates[:, None], heading, edges, rival=rival)
     assert kept.all() == (places == 1)
     # now the faint place has no active charts at all
     assert place_branches(rates[:, None], heading, edges, active=0.6, rival=rival).all()
