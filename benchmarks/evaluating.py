@@ -9,7 +9,7 @@ import torch
 from benchmarks.timing import ROOM, Figures, missing, one_core, poses, rate, seconds, versus
 from cogmap.cells import heading_statistics, place_statistics
 from cogmap.threads import one_thread
-from neurons.layers.place_cells import PEAK, PlaceCells
+from neurons.layers.place_cells import PlaceCells
 
 CELLS = 1000
 POSITIONS = 10_000
@@ -58,7 +58,7 @@ def rats(positions: np.ndarray) -> Callable[[], int]:
     from ratinabox.Neurons import PlaceCells as Peers  # noqa: PLC0415
 
     box = Environment(params={"aspect": 4 / 3, "scale": 3})
-    settings = {"n": CELLS, "wall_geometry": "euclidean", "max_fr": PEAK}
+    settings = {"n": CELLS, "wall_geometry": "euclidean", "max_fr": 20.0}
     cells, inside = Peers(Agent(box), params=settings), positions - positions.min(axis=0)
 
     def evaluate() -> int:

@@ -13,7 +13,7 @@ import numpy as np
 from arena import Brownian, Camera, Recording, explore
 from benchmarks.timing import ROOM, Figures
 from cogmap import CognitiveMap
-from neurons.network import STAGES
+from neurons.stages import STAGES
 
 VIEWS = 200_000
 WALKED = 17_000
@@ -51,7 +51,7 @@ def learn(path: Path, views: int) -> Figures:
         cmap.partial_fit(piece, walk.odours[start : start + PIECE], jump=True)
         spent.append(time.perf_counter() - started)
         peaks.append(peak())
-    tenth, begun = len(spent) // 10, cmap._network.begins(STAGES[-1]) // PIECE  # noqa: SLF001
+    tenth, begun = len(spent) // 10, cmap._network.begins(STAGES[-1].name) // PIECE  # noqa: SLF001
     return {
         "views": len(spent) * PIECE,
         "views_per_s": len(spent) * PIECE / sum(spent),

@@ -5,6 +5,7 @@ from neurons.atlas.disambiguation import place_branches
 from neurons.atlas.heading_axis import heading_axes
 from neurons.atlas.metric_map import MetricMap, MetricReading
 from neurons.atlas.synchronisation import Compass, synchronise
+from neurons.circuit import Circuit
 from neurons.errors import NeuronsError
 from neurons.layers.afferents import Afferents
 from neurons.layers.charts import Charts, NearestCharts
@@ -16,12 +17,16 @@ from neurons.layers.retina import Retina
 from neurons.layers.sanger import Sanger
 from neurons.merging import forked, merge
 from neurons.network import Network
+from neurons.stages import STAGES, Batch, Stage
 
 __all__ = [
+    "STAGES",
     "Afferents",
     "Atlas",
+    "Batch",
     "ChartActivity",
     "Charts",
+    "Circuit",
     "Compass",
     "HeadDirectionCells",
     "MetricMap",
@@ -34,6 +39,7 @@ __all__ = [
     "Readout",
     "Retina",
     "Sanger",
+    "Stage",
     "forked",
     "heading_axes",
     "merge",

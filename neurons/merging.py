@@ -7,27 +7,8 @@ from copy import deepcopy
 import torch
 
 from neurons.errors import NeuronsError
-from neurons.network import EPOCHS, STAGES, Network
-
-SUMS = {
-    "olfaction": ("olfaction.gram", "olfaction.cross"),
-    "metric_map": (
-        "metric_map.spread",
-        "metric_map.ahead",
-        "metric_map.shared",
-        "metric_map.counted",
-        "metric_map.seen",
-    ),
-    "afferents": (
-        "place.afferents.association",
-        "place.afferents.activity",
-        "heading.afferents.association",
-        "heading.afferents.activity",
-    ),
-}
-"""What each stage adds to. In the others units compete, and what they learn depends on the order of views."""
-OWN = ("views_seen", "metric_map.recent")
-"""In what else two maps may differ: the views so far, and the last of them."""
+from neurons.network import Network
+from neurons.stages import Stage
 
 
 def forked(network: Network) -> Network:
@@ -41,10 +22,10 @@ def forked(network: Network) -> Network:
     network.advance_stage()
     stage = _shared_stage(network)
     other = deepcopy(network)
-    for name in SUMS[stage]:
+    for name in stage.sums:
         other.get_buffer(name).zero_()
-    other.metric_map.break_sequence()
-    other.views_seen.fill_(network.begins(stage))
+    other.break_sequence()
+    other.views_seen.fill_(network.begins(stage.name))
     return other
 
 
@@ -58,45 +39,49 @@ def merge(network: Network, other: Network) -> None:
     NeuronsError
         When they differ in anything but these sums.
     """
-    if network.stage == STAGES[int(other.stage_index)]:
+    if network.stage == other.entered:
         network.advance_stage()
     stage = _shared_stage(network)
     _check_kin(network, other, stage)
-    for name in SUMS[stage]:
+    for name in stage.sums:
         network.get_buffer(name).add_(other.get_buffer(name))
-    begun = network.begins(stage)
+    begun = network.begins(stage.name)
     views_seen, others = int(network.views_seen), int(other.views_seen)
     together = views_seen + others - begun
-    if stage != STAGES[-1]:
-        together = min(together, max(begun + EPOCHS[stage] * network.epoch, views_seen, others))
+    if stage != network.stages[-1]:
+        together = min(together, max(begun + stage.epochs * network.epoch, views_seen, others))
     network.views_seen.fill_(together)
 
 
-def _shared_stage(network: Network) -> str:
+def _shared_stage(network: Network) -> Stage:
     """Give the stage that a network is in, if its work can be shared."""
-    stage = STAGES[int(network.stage_index)]
-    if stage not in SUMS:
+    stage = network.entered
+    if not stage.sums:
+        shared = ", ".join(repr(each.name) for each in network.stages if each.sums)
         raise NeuronsError(
-            f"this map is in its {stage!r} stage, in which units compete for one view after the other; "
-            f"maps share the work in {', '.join(map(repr, SUMS))}: show it more views first"
+            f"this map is in its {stage.name!r} stage, in which units compete for one view after the other; "
+            f"maps share the work in {shared}: show it more views first"
         )
     return stage
 
 
-def _check_kin(network: Network, other: Network, stage: str) -> None:
+def _check_kin(network: Network, other: Network, stage: Stage) -> None:
     mine, its = network.state_dict(), other.state_dict()
-    if network.epoch != other.epoch or any(mine[name].shape != its[name].shape for name in mine):
+    if (network.stages, network.epoch) != (other.stages, other.epoch) or any(
+        mine[name].shape != its[name].shape for name in mine
+    ):
         raise NeuronsError(
-            "these maps differ in views, odorants, charts, components, cells or epoch; merge forks of one map"
+            "these maps differ in views, odorants, charts, components, cells, epoch or stages; "
+            "merge forks of one map"
         )
-    if other.stage_index != network.stage_index:
+    if other.entered != stage:
         raise NeuronsError(
-            f"this map is in its {stage!r} stage and the other in its {STAGES[int(other.stage_index)]!r} "
+            f"this map is in its {stage.name!r} stage and the other in its {other.entered.name!r} "
             "stage; merge them before either leaves the stage in which they parted"
         )
-    for name in mine:
-        if name in (*SUMS[stage], *OWN):
-            continue
+    recent = (name for each in network.stages for name in each.recent)
+    own = {"views_seen", *stage.sums, *recent}  # in which two maps may differ
+    for name in sorted(mine.keys() - own):
         if not torch.equal(mine[name].nan_to_num(), its[name].nan_to_num()):
             raise NeuronsError(
                 f"these maps were not grown from the same charts: {name} differs; merge forks of one map, "

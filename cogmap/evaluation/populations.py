@@ -29,7 +29,7 @@ from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import BATCH, CognitiveMap
 from cogmap.threads import one_thread
 from neurons.layers.place_cells import PlaceCells
-from neurons.network import EPOCHS
+from neurons.stages import CellStage
 
 CELLS = 150
 """In a population that competes for something; as many as a map has place cells."""
@@ -68,7 +68,7 @@ def competing_cells(
     order = np.random.default_rng(seed)
     layer = PlaceCells(cells, 1, inputs.shape[1])
     with one_thread():
-        for _ in range(EPOCHS["cells"]):
+        for _ in range(CellStage.epochs):
             for rows in torch.from_numpy(order.permutation(len(inputs))).split(BATCH):
                 layer.compete(inputs[rows], window=float(len(inputs)))
         return [layer.tuning(torch.from_numpy(np.asarray(batch, np.float32))).numpy() for batch in test]

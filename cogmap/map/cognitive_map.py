@@ -6,6 +6,8 @@ import time
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from copy import copy
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +26,7 @@ from cogmap.threads import one_thread
 from neurons.errors import NeuronsError
 from neurons.layers.retina import Retina
 from neurons.merging import forked, merge
-from neurons.network import EPOCHS, IN_ORDER, Network
+from neurons.network import Network
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same map."""
@@ -96,7 +98,7 @@ class CognitiveMap:
     def fit(self, views: Any, odours: ArrayLike, *, progress: bool = False) -> CognitiveMap:
         """Learn a map from scratch, as epochs of `partial_fit` over the views.
 
-        Their order is random in every epoch but that of the metric map, which takes them as they are given.
+        Their order is random in every epoch but those of stages that learn from it, as the metric map does.
 
         Parameters
         ----------
@@ -115,22 +117,22 @@ class CognitiveMap:
                 "record more views or use fewer charts: about a fifth as many as views"
             )
         self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=views.shape[0])
+        network, count = self._network, views.shape[0]
         order = np.random.default_rng(self.seed)
-        with one_thread(), tqdm(total=sum(EPOCHS.values()), unit="epoch", disable=not progress) as bar:
+        with one_thread(), tqdm(total=network.epochs, unit="epoch", disable=not progress) as bar:
             started = time.perf_counter()
             strips = torch.cat([strip for _, strip in self._strips(views)])
             self.seconds_["retina"] = time.perf_counter() - started
-            count = views.shape[0]
-            while int(self._network.views_seen) < sum(EPOCHS.values()) * count:
+            while int(network.views_seen) < network.epochs * count:
                 started = time.perf_counter()
-                self._network.advance_stage()
-                stage = self._network.stage
-                bar.set_description(stage)
-                epoch = np.arange(count) if stage == IN_ORDER else order.permutation(count)
+                network.advance_stage()
+                stage = network.stage
+                bar.set_description(stage.name)
+                epoch = np.arange(count) if stage.in_order else order.permutation(count)
                 for rows in torch.from_numpy(epoch).split(BATCH):
-                    self._network.learn(strips[rows], smells[rows])
-                self.seconds_[stage] = self.seconds_.get(stage, 0.0) + time.perf_counter() - started
-                bar.n = int(self._network.views_seen) // count
+                    network.learn(strips[rows], smells[rows])
+                self.seconds_[stage.name] = self.seconds_.get(stage.name, 0.0) + time.perf_counter() - started
+                bar.n = int(network.views_seen) // count
                 bar.refresh()
         return self
 
@@ -155,7 +157,7 @@ class CognitiveMap:
         if fresh:
             self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=checked_count("epoch", self.epoch))
         if jump:
-            self._network.metric_map.break_sequence()
+            self._network.break_sequence()
         with one_thread():
             for rows, strip in self._strips(views):
                 self._network.learn(strip, smells[rows])
@@ -165,7 +167,8 @@ class CognitiveMap:
         """Give another explorer a map of the same charts, which has learnt nothing yet in the present stage.
 
         So what it learns is not what this one has learnt already, and `merge` adds it. Stages whose work can
-        be shared in this way are those of `neurons.merging.SUMS`: olfaction, metric map and afferents.
+        be shared in this way are those that learn sums (`neurons.stages.Stage.sums`): olfaction, metric map
+        and afferents.
 
         Raises
         ------
@@ -173,8 +176,7 @@ class CognitiveMap:
             In a stage in which units compete for views, so that learning depends on their order.
         """
         self._check_grown()
-        other = CognitiveMap(**self._settings())
-        other._retina, other.view_shape_, other.odorants_ = self._retina, self.view_shape_, self.odorants_
+        other: CognitiveMap = copy(self)
         other.seconds_ = {}
         with one_thread(), _at_the_edge():
             other._network = forked(self._network)
@@ -300,15 +302,7 @@ class CognitiveMap:
         return loaded
 
     def _settings(self) -> dict[str, Any]:
-        return {
-            "charts": self.charts,
-            "components": self.components,
-            "most_charts": self.most_charts,
-            "place_cells": self.place_cells,
-            "heading_cells": self.heading_cells,
-            "epoch": self.epoch,
-            "seed": self.seed,
-        }
+        return {name: getattr(self, name) for name in signature(CognitiveMap).parameters}
 
     def _begin(
         self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, charts: int | None = None
@@ -344,9 +338,7 @@ class CognitiveMap:
     def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, ...]:
         """Rates of both populations, heading, recalled odour and position."""
         network = self._network
-        codes = network.code(strips)
-        excited = network.readout.excite(network.charts, codes)
-        heading, odour = network.readout(network.charts, codes, excited)
+        excited, heading, odour = network.recall(strips)
         position, offset = network.metric_map(network.place, odour)
         angle = heading + offset
         phase = torch.atan2(angle.sin(), angle.cos())

@@ -8,11 +8,6 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor
 
-OVERLAPS = 8
-"""Nearest charts that a chart overlaps."""
-POOL = 12
-"""Nearest charts, itself included, over which a chart pools what it knows of smell."""
-
 
 @dataclass(frozen=True)
 class Atlas:
@@ -33,16 +28,29 @@ class Atlas:
     spacing: Float[Tensor, "charts"]
 
     @classmethod
-    def of(cls, centres: Float[Tensor, "charts components"]) -> Atlas:
-        """Find the neighbourhoods of chart centres."""
+    def of(cls, centres: Float[Tensor, "charts components"], *, overlaps: int = 8, pool: int = 12) -> Atlas:
+        """Find the neighbourhoods of chart centres.
+
+        Parameters
+        ----------
+        centres
+            C_k.
+        overlaps
+            Nearest charts that a chart overlaps: enough to hang together in three dimensions, and near enough
+            for a straight step from centre to centre.
+        pool
+            Nearest charts, itself included, over which a chart pools what it knows of smell: a gradient of
+            one chart leaves its null direction to the noise.
+        """
         count = len(centres)
+        # exact: |a|² + |b|² − 2 a·b would lose the digits of neighbours far from the origin
         distance = torch.cdist(centres, centres, compute_mode="donot_use_mm_for_euclid_dist")
-        nearest = distance.topk(min(max(POOL, OVERLAPS + 1), count), dim=1, largest=False)
-        overlap = nearest.indices[:, 1 : OVERLAPS + 1]
+        nearest = distance.topk(min(max(pool, overlaps + 1), count), dim=1, largest=False)
+        overlap = nearest.indices[:, 1 : overlaps + 1]
         here = torch.arange(count)[:, None].expand_as(overlap)
         pairs = torch.stack([torch.minimum(here, overlap), torch.maximum(here, overlap)], dim=2)
         return cls(
-            pool=nearest.indices[:, :POOL],
+            pool=nearest.indices[:, :pool],
             edges=torch.unique(pairs.flatten(0, 1), dim=0),
-            spacing=nearest.values[:, 1 : OVERLAPS + 1].square().mean(dim=1).sqrt(),
+            spacing=nearest.values[:, 1 : overlaps + 1].square().mean(dim=1).sqrt(),
         )

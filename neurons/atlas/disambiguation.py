@@ -9,18 +9,14 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 from torch import Tensor
 
-ACTIVE = 0.1
-"""A chart where a unit fires at least at this part of its peak is one of its active charts."""
-RIVAL = 0.12
-"""A group of active charts that evokes at least this part of what the strongest group does may be a place."""
-LIGHT = 0.03
-"""A group that evokes less than this part of what the strongest does is noise."""
-TURNED = 0.5
-"""A group of which the mean heading vector is longer is a part of a place, where all headings are."""
-
 
 def place_branches(
-    rates: Float[Tensor, "charts cells"], phases: Float[Tensor, "charts"], edges: Int[Tensor, "edges 2"]
+    rates: Float[Tensor, "charts cells"],
+    phases: Float[Tensor, "charts"],
+    edges: Int[Tensor, "edges 2"],
+    *,
+    active: float = 0.1,
+    rival: float = 0.12,
 ) -> Bool[Tensor, "charts cells"]:
     """Say which charts a unit listens to: all, or those nearest to one place when its smell means several.
 
@@ -39,15 +35,20 @@ def place_branches(
         as on a path where nobody turns, and the two directions are two places.
     edges
         Overlapping charts.
+    active
+        A chart where a unit fires at least at this part of its peak is one of its active charts.
+    rival
+        A group of active charts that evokes at least this part of what the strongest group does is a place.
     """
     evoked = rates.double().numpy()
     count, cells = evoked.shape
     k, j = edges.numpy().T
     graph = csr_array((np.ones(2 * len(k)), (np.r_[k, j], np.r_[j, k])), shape=(count, count))
     heading = np.exp(1j * phases.double().numpy())
-    groups = [_places(evoked[:, cell], heading, graph) for cell in range(cells)]
+    groups = [_places(rate, heading, graph, active, rival) for rate in evoked.T]
     kept = np.ones((count, cells), dtype=bool)
     covered = np.zeros(count)
+    # unambiguous units first; the sort is stable, so that the rest are asked by number
     for cell in sorted(range(cells), key=lambda cell: len(groups[cell]) > 1):
         if len(groups[cell]) > 1:
             rate = evoked[:, cell]
@@ -64,22 +65,26 @@ def _places(
     rate: Float[np.ndarray, "charts"],
     heading: Complex[np.ndarray, "charts"],
     graph: csr_array,
+    active: float,
+    rival: float,
 ) -> list[Int[np.ndarray, "_"]]:
     """Find the groups of active charts that hang together, parts of a place joined with the nearest group."""
-    active = np.flatnonzero((rate >= ACTIVE * rate.max()) & (rate > 0))
-    found, label = connected_components(graph[active][:, active], directed=False)
-    weight = np.bincount(label, rate[active], minlength=found)
-    groups = [active[label == group] for group in np.flatnonzero(weight >= LIGHT * weight.max(initial=0.0))]
+    firing = np.flatnonzero((rate >= active * rate.max()) & (rate > 0))
+    found, label = connected_components(graph[firing][:, firing], directed=False)
+    weight = np.bincount(label, rate[firing], minlength=found)
+    # a group of less than 3 % of the strongest is noise
+    groups = [firing[label == group] for group in np.flatnonzero(weight >= 0.03 * weight.max(initial=0.0))]
     while len(groups) > 1:
-        turned = [abs(rate[group] @ heading[group]) / rate[group].sum() for group in groups]
-        if np.isnan(turned).any():
+        length = [abs(rate[group] @ heading[group]) / rate[group].sum() for group in groups]
+        if np.isnan(length).any():  # without a compass nothing tells parts of a place
             break
-        part = int(np.argmax(turned))
-        if turned[part] < TURNED:
+        part = int(np.argmax(length))
+        # around the compass headings cancel; an even half of it, a part of a place, has 2/π
+        if length[part] < 0.5:
             break
         steps = dijkstra(graph, unweighted=True, indices=groups[part], min_only=True)
         lost = groups.pop(part)
         nearest = int(np.argmin([steps[group].min() for group in groups]))
         groups[nearest] = np.concatenate([groups[nearest], lost])
     heaviest = max((rate[group].sum() for group in groups), default=0.0)
-    return [group for group in groups if rate[group].sum() >= RIVAL * heaviest]
+    return [group for group in groups if rate[group].sum() >= rival * heaviest]

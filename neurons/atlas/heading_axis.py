@@ -19,11 +19,14 @@ def heading_axes(
     eigenvector of the smallest eigenvalue; lines n nᵀ are then averaged over the neighbours.
     """
     gradients = tangents.mT @ jacobians
+    # unit length, so that charts where smell is steep do not outvote the others
     gradients = gradients / gradients.square().sum(dim=(1, 2), keepdim=True).sqrt().clamp(min=1e-12)
     pooled = torch.einsum("kdc,kpco->kpdo", tangents, gradients[atlas.pool])
     change = torch.einsum("kpdo,kpeo->kde", pooled, pooled)
+    # in double precision, as the smallest eigenvalue is the square of what is small already
     smallest = torch.linalg.eigh(change.double()).eigenvectors[:, :, 0].float()
     axes = torch.einsum("kd,kdc->kc", smallest, tangents)
+    # n nᵀ and not n, as the sign of an eigenvector is arbitrary
     lines = torch.einsum("kdc,kpc->kpd", tangents, axes[atlas.pool])
     mean_line = torch.einsum("kpd,kpe->kde", lines, lines)
     largest = torch.linalg.eigh(mean_line.double()).eigenvectors[:, :, -1].float()

@@ -8,21 +8,6 @@ from torch import Tensor, nn
 
 from neurons.layers.place_cells import PlaceCells
 
-LAG = 3
-"""Steps from view to view in a displacement: long against the error of recall, short against the room."""
-STRAIGHT = 0.25
-"""Largest turn per step of a displacement, rad; a look around turns more."""
-RIDGE = 1e-3
-"""Prior on the map, as a fraction of the mean square of a feature's displacement."""
-ROUNDS = 100
-"""Rounds of the power iteration, which changes nothing any more after about fifty."""
-BLOCK = 128
-"""Consecutive displacements that fall to the same half of the evidence."""
-LEAST_R2 = 0.8
-"""Least share of the displacements of one half of a walk that the other half foretells, in a map worth
-having: .88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each other,
-whatever the headings do."""
-
 
 class MetricReading(NamedTuple):
     """What the metric map reads off smells."""
@@ -56,6 +41,16 @@ class MetricMap(nn.Module):
     ----------
     cells, odorants
         Of the place cells that it stands on.
+    lag
+        Steps from view to view in a displacement: long against the error of recall, short against the room.
+    straight
+        Largest turn per step of a displacement, rad; a look around turns more.
+    ridge
+        Prior on the map, as a fraction of the mean square of a feature's displacement.
+    least_r2
+        Least share of the displacements of one half of a walk that the other half foretells, in a map worth
+        having: .88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each
+        other, whatever the headings do.
 
     References
     ----------
@@ -73,8 +68,18 @@ class MetricMap(nn.Module):
     positions: Tensor
     offsets: Tensor
 
-    def __init__(self, cells: int, odorants: int) -> None:
+    def __init__(
+        self,
+        cells: int,
+        odorants: int,
+        *,
+        lag: int = 3,
+        straight: float = 0.25,
+        ridge: float = 1e-3,
+        least_r2: float = 0.8,
+    ) -> None:
         super().__init__()
+        self.lag, self.straight, self.ridge, self.least_r2 = lag, straight, ridge, least_r2
         features = cells * (odorants + 1)
         for name, shape in {
             "spread": (features, features),
@@ -84,7 +89,7 @@ class MetricMap(nn.Module):
         }.items():
             self.register_buffer(name, torch.zeros(2, *shape, dtype=torch.double))
         self.register_buffer("seen", torch.zeros((), dtype=torch.int64))
-        self.register_buffer("recent", torch.full((LAG, odorants + 1), torch.nan))
+        self.register_buffer("recent", torch.full((lag, odorants + 1), torch.nan))
         self.register_buffer("cross_validated_r2", torch.full((2,), torch.nan))
         self.register_buffer("positions", torch.full((features, 2), torch.nan))
         self.register_buffer("offsets", torch.zeros(cells))
@@ -95,23 +100,21 @@ class MetricMap(nn.Module):
         turn = torch.atan2(share @ self.offsets.sin(), share @ self.offsets.cos())
         return MetricReading(patches @ self.positions, turn)
 
-    def break_sequence(self) -> None:
-        """Forget the last views: the next one does not follow them."""
-        self.recent.fill_(torch.nan)
-
     def partial_fit(
         self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"], headings: Float[Tensor, "views"]
     ) -> None:
         """Add the next views of a walk, in order; they follow those of the last call."""
         walk = torch.cat([self.recent, torch.cat([log_odours, headings[:, None]], dim=1)])
-        self.recent = walk[-LAG:].clone()
-        straight, direction = _directions(walk[:, -1])
-        half = (self.seen + torch.arange(len(straight))) // BLOCK % 2
+        self.recent = walk[-self.lag :].clone()
+        straight, direction = self._directions(walk[:, -1])
+        # blocks of many times the lag, as displacements that overlap are not independent; short against a
+        # walk, so that both halves see all of the room
+        half = (self.seen + torch.arange(len(straight))) // 128 % 2
         self.seen += len(straight)
         share, patches = _patches(place, walk[:, :-1])
-        moved = patches[LAG:] - patches[:-LAG]
+        moved = patches[self.lag :] - patches[: -self.lag]
         # the middle of the way: its views are not those whose errors the displacement holds
-        under = share[1:-1].unfold(0, LAG - 1, 1).mean(dim=2)
+        under = share[1:-1].unfold(0, self.lag - 1, 1).mean(dim=2)
         for number in (0, 1):
             mine = straight & (half == number)
             v, w, u = moved[mine].double(), under[mine].double(), direction[mine].to(torch.cdouble)
@@ -129,10 +132,13 @@ class MetricMap(nn.Module):
             return
         one, other = halves
         self.cross_validated_r2 = torch.tensor(
-            [one.cross_validated_r2(*other.solve()), other.cross_validated_r2(*one.solve())]
+            [
+                one.cross_validated_r2(*other.solve(self.ridge)),
+                other.cross_validated_r2(*one.solve(self.ridge)),
+            ]
         ).float()
         if not self.diagnosis():
-            positions, turns = self._evidence(slice(0, 2)).solve()
+            positions, turns = self._evidence(slice(0, 2)).solve(self.ridge)
             self.positions = torch.view_as_real(positions).float()
             self.offsets = turns.angle().float()
 
@@ -144,12 +150,23 @@ class MetricMap(nn.Module):
                 "few for a metric map; show it longer walks, in order"
             )
         share = float(self.cross_validated_r2.min())
-        if share < LEAST_R2:
+        if share < self.least_r2:
             return (
-                f"one half of the walk foretells {share:.2f} of the displacements of the other, less than "
-                f"{LEAST_R2}: what follows a view does not lie ahead of it; show it longer walks, in order"
+                f"one half of the walk foretells {share:.2f} of the displacements of the other, "
+                f"less than {self.least_r2}: what follows a view does not lie ahead of it; "
+                "show it longer walks, in order"
             )
         return ""
+
+    def _directions(
+        self, headings: Float[Tensor, "views"]
+    ) -> tuple[Bool[Tensor, "ways"], Complex[Tensor, "ways"]]:
+        """Tell for each view and the one `lag` later if the way is straight, and the mean heading on it."""
+        heading = torch.polar(torch.ones_like(headings), headings)
+        # as products of unit numbers, turns need no wrapping, and NaN after a jump is never below a bound
+        turned = (heading[1:] * heading[:-1].conj()).angle().abs().unfold(0, self.lag, 1)
+        steps = ((heading[1:] + heading[:-1]) / 2).unfold(0, self.lag, 1)
+        return (turned < self.straight).all(dim=1), steps.mean(dim=1)
 
     def _evidence(self, halves: slice) -> "_Evidence":
         power, pairs = self.counted[halves].sum(dim=0).tolist()
@@ -171,15 +188,16 @@ class _Evidence(NamedTuple):
     power: float
     pairs: float
 
-    def solve(self) -> tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]:
+    def solve(self, ridge: float) -> tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]:
         """Give β and f."""
-        prior = RIDGE * self.spread.diagonal().mean() * torch.eye(len(self.spread), dtype=torch.double)
+        # cells that the walk never came by leave S singular
+        prior = ridge * self.spread.diagonal().mean() * torch.eye(len(self.spread), dtype=torch.double)
         parts = torch.view_as_real(self.ahead.mH.resolve_conj())
         solved = torch.linalg.solve(self.spread + prior, parts.flatten(1)).reshape(parts.shape)
         placing = torch.view_as_complex(solved.contiguous())
         turns = torch.ones(len(self.ahead), dtype=torch.cdouble)
         agreement = self.ahead @ placing
-        for _ in range(ROUNDS):
+        for _ in range(100):  # nothing changes any more after about fifty
             turns = torch.sgn(agreement @ turns)
         return placing @ turns, turns
 
@@ -191,14 +209,6 @@ class _Evidence(NamedTuple):
         looked = (turns.conj() @ self.shared.to(torch.cdouble) @ turns).real
         both = (turns.conj() @ self.ahead @ positions).real
         return 1 - float(moved + looked - 2 * both) / self.power
-
-
-def _directions(headings: Float[Tensor, "views"]) -> tuple[Bool[Tensor, "ways"], Complex[Tensor, "ways"]]:
-    """Tell of each view and the one `LAG` later whether the way is straight, and the mean heading on it."""
-    heading = torch.polar(torch.ones_like(headings), headings)
-    turned = (heading[1:] * heading[:-1].conj()).angle().abs().unfold(0, LAG, 1)
-    steps = ((heading[1:] + heading[:-1]) / 2).unfold(0, LAG, 1)
-    return (turned < STRAIGHT).all(dim=1), steps.mean(dim=1)
 
 
 def _patches(

@@ -16,15 +16,6 @@ from torch import Tensor
 from neurons.atlas.atlas import Atlas
 from neurons.errors import NeuronsError
 
-CELLS = 250
-"""Groups of charts, turning rigidly together, on which the scale of a turn is sought."""
-SCALES = np.geomspace(0.03, 1.5, 80)
-"""Scales tried, in rad per root-mean-square displacement along the axis."""
-
-
-LEAST_DIP = 1e-6
-"""How far the eigenvalue must have fallen before a maximum; less is rounding, as where nothing closes."""
-
 
 @dataclass(frozen=True)
 class Compass:
@@ -65,6 +56,7 @@ class _Overlaps:
         entry = weight / np.sqrt(degree[k] * degree[j])
         index = (np.r_[k, j], np.r_[j, k])
         matrix = csc_array((np.r_[entry, entry.conj()], index), shape=(self.count, self.count))
+        # the eigenvector where no weight has a phase: a start that needs no random numbers
         start = np.sqrt(degree).astype(complex)
         value, vector = eigsh(matrix, k=1, sigma=1 + 1e-4, v0=start, tol=1e-8)
         return float(value[0]), vector[:, 0]
@@ -74,6 +66,9 @@ def synchronise(
     centres: Float[Tensor, "charts components"],
     axes: Float[Tensor, "charts components"],
     atlas: Atlas,
+    *,
+    cells: int = 250,
+    scales: tuple[float, float, int] = (0.03, 1.5, 80),
 ) -> Compass:
     """Make local heading axes agree on a direction of turning, a scale and a phase.
 
@@ -83,6 +78,17 @@ def synchronise(
     first interior maximum where the ring closes after exactly one turn, and has others at the harmonics. The
     first is found on cells of charts, refined by a parabola in log c, and the phases of the eigenvector at
     that scale are the headings of the charts.
+
+    Parameters
+    ----------
+    centres, axes, atlas
+        C_k, n_k up to sign, and the overlaps.
+    cells
+        Groups of charts, turning together, on which the scale is sought: dense eigenvalues of a few hundred
+        are fast.
+    scales
+        Least, greatest and number of the scales tried, in rad per root-mean-square displacement along the
+        axis: from 200 overlaps around the ring to four; neighbours on the grid are 5 % apart.
 
     Raises
     ------
@@ -102,11 +108,12 @@ def synchronise(
     n, c = axes.double().numpy(), centres.double().numpy()
     agreement = np.einsum("ec,ec->e", n[k], n[j])
     _, vector = overlaps.top(agreement.astype(complex))
+    # relative to the largest entry, as the phase of an eigenvector is arbitrary
     sign = np.where((vector * vector[np.argmax(np.abs(vector))].conj()).real < 0, -1.0, 1.0)
     n = n * sign[:, None]
     signed = sign[k] * sign[j] * agreement
     omega = 0.5 * np.einsum("ec,ec->e", c[j] - c[k], n[k] + n[j])
-    scale, eigenvalue, phases = _close_ring(overlaps, omega)
+    scale, eigenvalue, phases = _close_ring(overlaps, omega, np.geomspace(*scales), cells)
     return Compass(
         axes=torch.from_numpy(n).float(),
         scale=scale,
@@ -117,12 +124,13 @@ def synchronise(
 
 
 def _close_ring(
-    overlaps: _Overlaps, omega: Float[np.ndarray, "edges"]
+    overlaps: _Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"], cells: int
 ) -> tuple[float, float, Float[np.ndarray, "charts"]]:
     """Find the scale at which loops close after one turn; it, the eigenvalue there, and the phases."""
-    tried = SCALES / np.sqrt(np.mean(omega**2))
-    values = _coarse_eigenvalues(overlaps, omega, tried)
-    risen = values - np.minimum.accumulate(values) > LEAST_DIP
+    tried = scales / np.sqrt(np.mean(omega**2))
+    values = _coarse_eigenvalues(overlaps, omega, tried, cells)
+    # where nothing closes the eigenvalue is 1 but for rounding, which has maxima too
+    risen = values - np.minimum.accumulate(values) > 1e-6
     peaks = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:]) & risen[1:-1]) + 1
     if not len(peaks):
         raise NeuronsError("no loop of charts closes after a turn; use more charts or more views")
@@ -135,7 +143,7 @@ def _close_ring(
 
 
 def _coarse_eigenvalues(
-    overlaps: _Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"]
+    overlaps: _Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"], cells: int
 ) -> Float[np.ndarray, "scales"]:
     """Bound the top eigenvalue from below at many scales, by Rayleigh and Ritz on cells that turn together.
 
@@ -145,12 +153,13 @@ def _coarse_eigenvalues(
     k, j = overlaps.edges.T
     count = overlaps.count
     graph = csc_array((np.ones(len(k)), (k, j)), shape=(count, count))
-    roots = np.linspace(0, count - 1, min(CELLS, count)).astype(int)
+    roots = np.linspace(0, count - 1, min(cells, count)).astype(int)
     steps, before, source = dijkstra(
         graph, directed=False, unweighted=True, indices=roots, min_only=True, return_predecessors=True
     )
     cell = np.searchsorted(roots, source)
     step = csc_array((np.r_[omega, -omega], (np.r_[k, j], np.r_[j, k])), shape=(count, count)).tocsr()
+    # shell by shell, as each potential stands on that of the chart before it
     potential = np.zeros(count)
     for depth in range(1, int(steps.max()) + 1):
         shell = np.flatnonzero(steps == depth)

@@ -37,11 +37,13 @@ class Afferents(nn.Module):
         """Associate a batch of views with the rates (Hz) that an instructor demands."""
         chart, weight = excited
         self.activity.index_add_(0, chart.flatten(), weight.flatten())
+        # sums, not a running mean: what maps have learnt apart can be added up
         pairs = (weight[:, :, None] * rates[:, None]).flatten(0, 1)
         self.association.index_add_(0, chart.flatten(), pairs)
 
     def forward(self, excited: ChartActivity) -> Float[Tensor, "views cells"]:
         """Rates in Hz from chart activity alone."""
         chart, weight = excited
+        # the few active rows are divided, not the whole matrix of weights
         norm = self.activity.clamp(min=1e-12)[chart]
         return torch.einsum("nw,nwc->nc", weight / norm, self.association[chart])

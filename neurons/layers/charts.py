@@ -102,11 +102,14 @@ class Charts(nn.Module):
         chart = self.excite(codes, winners).chart
         h = torch.exp(-2.0 * torch.arange(chart.shape[1]) / chart.shape[1])
         flat, weight = chart.flatten(), h.repeat(len(codes))
+        # forgotten by the batch, and never below zero where a batch is longer than the window
         self.responsibility *= max(0.0, 1 - len(codes) / window)
         self.responsibility.index_add_(0, flat, weight)
+        # a chart that has not won yet has no weight to divide by, and its numerators are zero
         rate = 1 / self.responsibility.clamp(min=1e-6)
         residual = (codes[:, None] - self.centres[chart]).flatten(0, 1)
         y = torch.einsum("ndc,nc->nd", self.tangents[flat], residual)
+        # index_add_ on one thread adds in the order of views, so that the same seed gives the same bits
         shift = torch.zeros_like(self.centres).index_add_(0, flat, weight[:, None] * residual)
         hebb = torch.zeros_like(self.tangents).index_add_(
             0, flat, (weight[:, None] * y)[:, :, None] * residual[:, None]
@@ -120,6 +123,7 @@ class Charts(nn.Module):
         decay = torch.tril(cross, diagonal=-1) @ self.tangents
         drive += rate[:, None, None] * (hebb - decay - fed[:, None, None] * drive)
         self.variances = drive.norm(dim=2)
+        # a chart that has won nothing has drive 0, and keeps the tangents that it was born with
         length = self.variances[:, :, None]
         self.tangents = torch.where(length > 0, drive / length, self.tangents)
 

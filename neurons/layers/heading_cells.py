@@ -5,12 +5,6 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from neurons.layers.afferents import Afferents
-from neurons.layers.place_cells import PEAK
-
-CONCENTRATION = 5.0
-"""κ of the von Mises tuning: a full width at half height of 61°."""
-WINNERS = 3
-"""Units that learn from one heading."""
 
 
 class HeadDirectionCells(nn.Module):
@@ -18,7 +12,7 @@ class HeadDirectionCells(nn.Module):
 
     Units share out the headings as their preferred directions p_i; the tuning is
 
-        r_i(θ) = 20 Hz · exp(κ (cos(θ − p_i) − 1)).
+        r_i(θ) = peak · exp(κ (cos(θ − p_i) − 1)).
 
     Parameters
     ----------
@@ -26,30 +20,48 @@ class HeadDirectionCells(nn.Module):
         Sizes.
     generator
         Draws the initial preferred directions.
+    concentration
+        κ of the von Mises tuning; 5 has a full width at half height of 61°.
+    peak
+        Rate at the preferred direction, Hz.
     """
 
     preferred: Tensor
     responsibility: Tensor
 
-    def __init__(self, cells: int, charts: int, *, generator: torch.Generator) -> None:
+    def __init__(
+        self,
+        cells: int,
+        charts: int,
+        *,
+        generator: torch.Generator,
+        concentration: float = 5.0,
+        peak: float = 20.0,
+    ) -> None:
         super().__init__()
+        self.concentration, self.peak = concentration, peak
         self.register_buffer("preferred", 2 * torch.pi * torch.rand(cells, generator=generator) - torch.pi)
         self.register_buffer("responsibility", torch.zeros(cells))
         self.afferents = Afferents(charts, cells)
 
-    def compete(self, headings: Float[Tensor, "views"], *, window: float) -> None:
-        """Learn from a batch of headings (rad); `window` is in views."""
+    def compete(self, headings: Float[Tensor, "views"], *, window: float, winners: int = 3) -> None:
+        """Learn from a batch of headings (rad).
+
+        The nearest `winners` units learn from each: with the neighbours on both sides none is left behind.
+        `window` is how many views a unit remembers when it averages.
+        """
         apart = _wrapped(headings[:, None] - self.preferred)
-        unit = apart.abs().topk(min(WINNERS, len(self.preferred)), dim=1, largest=False).indices
+        unit = apart.abs().topk(min(winners, len(self.preferred)), dim=1, largest=False).indices
         flat = unit.flatten()
         self.responsibility *= max(0.0, 1 - len(headings) / window)
         self.responsibility.index_add_(0, flat, torch.ones(len(flat)))
+        # deviations are averaged, not angles: those would tear at ±π
         pull = torch.zeros_like(self.responsibility).index_add_(0, flat, apart.gather(1, unit).flatten())
         self.preferred = _wrapped(self.preferred + pull / self.responsibility.clamp(min=1e-6))
 
     def tuning(self, headings: Float[Tensor, "views"]) -> Float[Tensor, "views cells"]:
         """Rates in Hz that a heading demands."""
-        return PEAK * torch.exp(CONCENTRATION * (torch.cos(headings[:, None] - self.preferred) - 1))
+        return self.peak * torch.exp(self.concentration * (torch.cos(headings[:, None] - self.preferred) - 1))
 
 
 def _wrapped(angle: Float[Tensor, "*shape"]) -> Float[Tensor, "*shape"]:

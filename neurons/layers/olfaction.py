@@ -6,9 +6,6 @@ from torch import Tensor, nn
 
 from neurons.layers.charts import DIMENSIONS
 
-RIDGE = 1e-3
-"""Prior on the slopes, as a fraction of the variance of the coordinates."""
-
 
 class Olfaction(nn.Module):
     """Per chart, the regression of log odour on f = [1, U_k (z − C_k)], kept as sums.
@@ -16,13 +13,22 @@ class Olfaction(nn.Module):
     Each view adds h f fᵀ and h f oᵀ to the charts it excites; `solve` gives the intercepts a_k and Jacobians
     J_k. Sums can be added to by a stream and merged between maps grown from the same charts; in double
     precision, so that it hardly matters in which order.
+
+    Parameters
+    ----------
+    charts, odorants
+        Sizes.
+    ridge
+        Prior on the slopes, as a fraction of the variance of the coordinates: a chart whose views lie on a
+        line has no slope across it.
     """
 
     gram: Tensor
     cross: Tensor
 
-    def __init__(self, charts: int, odorants: int) -> None:
+    def __init__(self, charts: int, odorants: int, *, ridge: float = 1e-3) -> None:
         super().__init__()
+        self.ridge = ridge
         self.register_buffer("gram", torch.zeros(charts, DIMENSIONS + 1, DIMENSIONS + 1, dtype=torch.double))
         self.register_buffer("cross", torch.zeros(charts, DIMENSIONS + 1, odorants, dtype=torch.double))
 
@@ -46,7 +52,8 @@ class Olfaction(nn.Module):
         slopes = torch.diagonal(self.gram, dim1=1, dim2=2)[:, 1:].mean(dim=1)
         prior = torch.zeros_like(self.gram)
         for d in range(1, DIMENSIONS + 1):
-            prior[:, d, d] = RIDGE * slopes + 1e-9
+            # a chart that no view excited has nothing but the 1e-9, and smells of nothing
+            prior[:, d, d] = self.ridge * slopes + 1e-9
         prior[:, 0, 0] = 1e-9
         solution = torch.linalg.solve(self.gram + prior, self.cross).float()
         return solution[:, 0], solution[:, 1:]

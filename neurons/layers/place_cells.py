@@ -10,16 +10,6 @@ from neurons.atlas.disambiguation import place_branches
 from neurons.layers.afferents import Afferents
 from neurons.layers.readout import ChartActivity
 
-PEAK = 20.0
-"""Rate of a cell at the middle of its field, Hz."""
-WINNERS = 6
-"""Units that learn from one smell; it sets how much neighbouring fields overlap."""
-FLATNESS = 0.05
-"""Smallest width of a tuning in any direction, as a fraction of its mean variance."""
-FINEST = 1e-9
-"""Least mean variance of a tuning: a unit that has learnt a single smell has none of its own."""
-FAINTEST = -50.0
-"""Least exponent of a tuning, 4e-21 Hz: exp is twenty times slower where floats become subnormal."""
 BLOCK = 256
 """Smells evaluated together: what a core's cache holds for a thousand cells."""
 
@@ -30,7 +20,7 @@ class PlaceCells(nn.Module):
     Each smell o is learnt by the nearest units: c_i is the running mean and Σ_i the running covariance of
     what unit i has won, so that fields follow the geometry of the smells. Its tuning is
 
-        r_i(o) = 20 Hz · exp(−½ (o − c_i)ᵀ Σ_i⁻¹ (o − c_i)).
+        r_i(o) = peak · exp(−½ (o − c_i)ᵀ Σ_i⁻¹ (o − c_i)).
 
     With few odours a smell can mean several places. `disambiguate` makes a unit keep to one of them in
     sight, by the charts that it listens to; in the dark it remains ambiguous.
@@ -39,6 +29,11 @@ class PlaceCells(nn.Module):
     ----------
     cells, charts, odorants
         Sizes.
+    peak
+        Rate of a cell at the middle of its field, Hz.
+    flatness
+        Smallest variance of a tuning in any direction, as a fraction of its mean variance: along
+        a direction in which its smells hardly vary a unit would else fire in a sheet without width.
     """
 
     centres: Tensor
@@ -47,8 +42,11 @@ class PlaceCells(nn.Module):
     initialised: Tensor
     branches: Tensor
 
-    def __init__(self, cells: int, charts: int, odorants: int) -> None:
+    def __init__(
+        self, cells: int, charts: int, odorants: int, *, peak: float = 20.0, flatness: float = 0.05
+    ) -> None:
         super().__init__()
+        self.peak, self.flatness = peak, flatness
         self.register_buffer("centres", torch.zeros(cells, odorants))
         self.register_buffer("covariances", torch.eye(odorants).repeat(cells, 1, 1))
         self.register_buffer("responsibility", torch.zeros(cells))
@@ -56,8 +54,14 @@ class PlaceCells(nn.Module):
         self.register_buffer("branches", torch.ones(charts, cells, dtype=torch.bool))
         self.afferents = Afferents(charts, cells)
 
-    def compete(self, log_odours: Float[Tensor, "views odorants"], *, window: float) -> None:
-        """Learn from a batch of smells; the first smells become the centres, `window` is in views."""
+    def compete(
+        self, log_odours: Float[Tensor, "views odorants"], *, window: float, winners: int = 6
+    ) -> None:
+        """Learn from a batch of smells; the first smells become the centres.
+
+        The nearest `winners` units learn from each, which sets how much neighbouring fields overlap. `window`
+        is how many views a unit remembers when it averages.
+        """
         cells = len(self.centres)
         initialised = int(self.initialised)
         if initialised < cells:
@@ -68,11 +72,12 @@ class PlaceCells(nn.Module):
         if not len(log_odours):
             return
         distance = torch.cdist(log_odours, self.centres)
-        unit = distance.topk(min(WINNERS, cells), dim=1, largest=False).indices
+        unit = distance.topk(min(winners, cells), dim=1, largest=False).indices
         deviation = log_odours[:, None] - self.centres[unit]
         flat = unit.flatten()
         self.responsibility *= max(0.0, 1 - len(log_odours) / window)
         self.responsibility.index_add_(0, flat, torch.ones(len(flat)))
+        # a unit that has not won yet has no weight to divide by, and its numerators are zero
         rate = 1 / self.responsibility.clamp(min=1e-6)
         spread = (deviation[..., None] * deviation[:, :, None]).flatten(0, 1)
         fed = torch.zeros_like(self.responsibility).index_add_(0, flat, torch.ones(len(flat)))
@@ -101,8 +106,9 @@ class PlaceCells(nn.Module):
         """Rates in Hz that smell alone demands."""
         rates = log_odours.new_empty(len(log_odours), len(self.centres))
         demanded = self._exponents(log_odours)
+        # at least 2e-22 of the peak: exp is twenty times slower where floats become subnormal
         for exponent, evoked in zip(demanded, rates.split(BLOCK), strict=True):
-            torch.exp(exponent.to(rates.dtype).clamp_(FAINTEST, 0), out=evoked).mul_(PEAK)
+            torch.exp(exponent.to(rates.dtype).clamp_(-50.0, 0), out=evoked).mul_(self.peak)
         return rates
 
     def share(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
@@ -118,8 +124,9 @@ class PlaceCells(nn.Module):
         It is −½ P · (o oᵀ) + (P c) · o − ½ cᵀ P c, one matrix product on (o oᵀ, o).
         """
         odorants = self.centres.shape[1]
-        mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1).clamp(min=FINEST)
-        floor = FLATNESS * mean[:, None, None] * torch.eye(odorants)
+        # a unit that has learnt a single smell has no variance of its own
+        mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1).clamp(min=1e-9)
+        floor = self.flatness * mean[:, None, None] * torch.eye(odorants)
         # In double precision, as the three terms are large and cancel.
         precision = torch.linalg.inv((self.covariances + floor).double())
         centres = self.centres.double()

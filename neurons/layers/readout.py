@@ -10,11 +10,6 @@ from neurons.atlas.atlas import Atlas
 from neurons.atlas.synchronisation import Compass
 from neurons.layers.charts import DIMENSIONS, Charts
 
-WINNERS = 8
-"""Charts that speak for a view."""
-BREADTH = 0.7
-"""Width of a chart's receptive field, in units of its spacing."""
-
 
 class ChartActivity(NamedTuple):
     """Normalised activity of the charts that a view excites."""
@@ -31,6 +26,16 @@ class Readout(nn.Module):
     chart's spacing.
 
         θ̂ = arg Σ w exp i(φ_k + c n_k·(z − C_k)),        ô = Σ w (a_k + J_kᵀ U_k (z − C_k)).
+
+    Parameters
+    ----------
+    charts, components, odorants
+        Sizes.
+    winners
+        Charts that speak for a view: two along each of its three dimensions.
+    breadth
+        Width h_k of a chart's receptive field, in units of its spacing: wide enough that a view between
+        charts hears several, narrow enough that none speaks where its tangents no longer fit.
     """
 
     spacing: Tensor
@@ -39,8 +44,11 @@ class Readout(nn.Module):
     intercepts: Tensor
     jacobians: Tensor
 
-    def __init__(self, charts: int, components: int, odorants: int) -> None:
+    def __init__(
+        self, charts: int, components: int, odorants: int, *, winners: int = 8, breadth: float = 0.7
+    ) -> None:
         super().__init__()
+        self.winners, self.breadth = winners, breadth
         self.register_buffer("spacing", torch.ones(charts))
         self.register_buffer("phases", torch.full((charts,), torch.nan))
         self.register_buffer("turning", torch.full((charts, components), torch.nan))
@@ -62,8 +70,9 @@ class Readout(nn.Module):
 
     def excite(self, charts: Charts, codes: Float[Tensor, "views components"]) -> ChartActivity:
         """Activity of the nearest charts."""
-        nearest = charts.excite(codes, WINNERS)
-        width = BREADTH * self.spacing[nearest.chart]
+        nearest = charts.excite(codes, self.winners)
+        width = self.breadth * self.spacing[nearest.chart]
+        # softmax takes the largest exponent away: a view far from all charts would else have weights 0 / 0
         weight = torch.softmax(-0.5 * nearest.squared_distance / width**2, dim=1)
         return ChartActivity(nearest.chart, weight)
 

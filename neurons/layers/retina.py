@@ -11,6 +11,7 @@ def _circular_gaussian(columns: int, sigma: float) -> Float[Tensor, "columns col
     """Circulant matrix that blurs a ring of columns; each row sums to one."""
     offset = torch.arange(columns, dtype=torch.float64)
     distance = torch.minimum(offset, columns - offset)
+    # in double precision, so that rows sum to one as exactly as float32 can say
     kernel = torch.exp(-0.5 * (distance / sigma) ** 2)
     index = (torch.arange(columns)[:, None] - torch.arange(columns)[None]) % columns
     return (kernel / kernel.sum())[index].float()
@@ -22,10 +23,6 @@ def _area_average(pixels: int, receptors: int) -> Float[Tensor, "receptors pixel
     pixel = torch.arange(pixels, dtype=torch.float64)
     overlap = torch.minimum(edge[1:, None], pixel + 1) - torch.maximum(edge[:-1, None], pixel)
     return (overlap.clamp(min=0) * receptors / pixels).float()
-
-
-FAINTEST = 0.002
-"""Contrast (grey levels) that is amplified no further: above the rounding of float32, below any texture."""
 
 
 class Retina(nn.Module):
@@ -48,6 +45,8 @@ class Retina(nn.Module):
         Blurs in columns.
     floor
         Fraction of the mean contrast added to the local one, so that an empty wall is not amplified to noise.
+    faintest
+        Contrast (grey levels) that is amplified no further: above the rounding of float32, below any texture.
 
     Raises
     ------
@@ -75,6 +74,7 @@ class Retina(nn.Module):
         surround: float = 10.0,
         pool: float = 2.0,
         floor: float = 0.1,
+        faintest: float = 0.002,
     ) -> None:
         super().__init__()
         if height < rows or width < columns:
@@ -83,7 +83,8 @@ class Retina(nn.Module):
                 "record with a larger panoramic camera"
             )
         self.features = rows * 3 * columns
-        self.floor = floor
+        self.floor, self.faintest = floor, faintest
+        # both blurs in one matrix, as their difference is linear: one product per view
         blur = _circular_gaussian(columns, acuity)
         differences = blur - _circular_gaussian(columns, surround)
         for name, matrix in {
@@ -96,14 +97,15 @@ class Retina(nn.Module):
 
     def forward(self, views: UInt8[Tensor, "views height width 3"]) -> Float[Tensor, "views features"]:
         """Turn views into normalised strips, rows × colours × columns."""
-        # as floats, so many views fit the processor's cache
+        # 16 views of 60 × 360 are 4 MB as floats; more leave the processor's cache
         return torch.cat([self._strips(batch) for batch in views.split(16)])
 
     def _strips(self, views: UInt8[Tensor, "batch height width 3"]) -> Float[Tensor, "batch features"]:
         rows = self.average @ views.float().flatten(2)
         colours = rows.unflatten(2, (-1, 3)).transpose(2, 3).flatten(1, 2)
         strip = colours @ self.centre_surround
+        # over rows and colours alike: one gain per column, so that a view keeps its colours
         contrast = (strip.square().mean(dim=1, keepdim=True) @ self.pooling).sqrt()
-        gain = contrast + self.floor * contrast.mean(dim=2, keepdim=True) + FAINTEST
+        gain = contrast + self.floor * contrast.mean(dim=2, keepdim=True) + self.faintest
         blurred: Tensor = strip / gain @ self.blur
         return blurred.flatten(1)

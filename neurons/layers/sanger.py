@@ -57,8 +57,10 @@ class Sanger(nn.Module):
         y = centred @ self.weight.T
         rate = 0.5 / (1 + step / 40)
         hebb = y.T @ centred / len(x)
+        # the strict triangle: what earlier neurons explain; the decay of the neuron itself is in `drive`
         decay = torch.tril(y.T @ y / len(x), diagonal=-1) @ self.weight
         drive = self.variance[:, None] * self.weight
         drive += rate * (hebb - decay - drive)
+        # unit rows by division and not by Oja's quadratic term, which diverges for rates near 1 / variance
         self.variance = drive.norm(dim=1)
         self.weight = drive / self.variance[:, None].clamp(min=1e-12)

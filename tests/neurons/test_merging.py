@@ -7,10 +7,12 @@ from hypothesis import strategies as st
 from torch import Tensor
 
 from neurons.errors import NeuronsError
-from neurons.merging import OWN, SUMS, forked, merge
-from neurons.network import EPOCHS, STAGES, Network
+from neurons.merging import forked, merge
+from neurons.network import Network
+from neurons.stages import STAGES, Stage
 
 EPOCH = 400
+SHARED = [stage for stage in STAGES if stage.sums]
 Views = tuple[Tensor, Tensor]
 
 
@@ -48,10 +50,10 @@ def begun() -> dict[str, Network]:
     for number, stage in enumerate(STAGES):
         learn(
             network,
-            stream(network.begins(stage) - int(network.views_seen), number) if number else stream(0, 0),
+            stream(network.begins(stage.name) - int(network.views_seen), number) if number else stream(0, 0),
         )
         learn(network, stream(100, 100 + number))
-        found[stage] = deepcopy(network)
+        found[stage.name] = deepcopy(network)
     return found
 
 
@@ -65,16 +67,16 @@ def differing(one: Network, other: Network, tolerance: float = 0.0) -> set[str]:
     return names
 
 
-@pytest.mark.parametrize("stage", SUMS)
+@pytest.mark.parametrize("stage", SHARED, ids=lambda stage: stage.name)
 @settings(deadline=None, max_examples=10)
 @given(split=st.integers(0, 150), seed=st.integers(0, 99))
-def test_halves_are_the_whole(begun: dict[str, Network], stage: str, split: int, seed: int) -> None:
+def test_halves_are_the_whole(begun: dict[str, Network], stage: Stage, split: int, seed: int) -> None:
     strips, smells = stream(150, seed)
-    whole = deepcopy(begun[stage])
+    whole = deepcopy(begun[stage.name])
     merged, *halves = (forked(whole), forked(whole), forked(whole))
     merge(merged, whole)
     for part, half in zip((slice(split), slice(split, None)), halves, strict=True):
-        whole.metric_map.break_sequence()
+        whole.break_sequence()
         learn(whole, (strips[part], smells[part]))
         learn(half, (strips[part], smells[part]))
         merge(merged, half)
@@ -86,42 +88,42 @@ def test_halves_are_the_whole(begun: dict[str, Network], stage: str, split: int,
         torch.testing.assert_close(one, other, atol=1e-9, rtol=1e-5)
 
 
-@pytest.mark.parametrize("stage", SUMS)
+@pytest.mark.parametrize("stage", SHARED, ids=lambda stage: stage.name)
 @settings(deadline=None, max_examples=10)
 @given(views=st.tuples(st.integers(0, 500), st.integers(0, 500)))
 def test_commutative_and_nothing_adds_nothing(
-    begun: dict[str, Network], stage: str, views: tuple[int, int]
+    begun: dict[str, Network], stage: Stage, views: tuple[int, int]
 ) -> None:
-    one, other = forked(begun[stage]), forked(begun[stage])
+    one, other = forked(begun[stage.name]), forked(begun[stage.name])
     ages = [each.views_seen.clone() for each in (one, other)]
     for each, count, seed in zip((one, other), views, (1, 2), strict=True):
-        learn(each, stream(min(count, EPOCHS[stage] * EPOCH), seed))
+        learn(each, stream(min(count, stage.epochs * EPOCH), seed))
     left, right = deepcopy(one), deepcopy(other)
     merge(left, other)
     merge(right, one)
     assert differing(left, right) <= {"metric_map.recent"}
     assert one.metric_map.recent.equal(left.metric_map.recent) or one.metric_map.recent.isnan().any()
     unchanged = deepcopy(left)
-    merge(unchanged, forked(begun[stage]))
+    merge(unchanged, forked(begun[stage.name]))
     assert not differing(unchanged, left)
-    assert ages == [begun[stage].begins(stage)] * 2
+    assert ages == [begun[stage.name].begins(stage.name)] * 2
     assert (
         left.metric_map.seen
-        == one.metric_map.seen + other.metric_map.seen - (stage == "afferents") * one.metric_map.seen
+        == one.metric_map.seen + other.metric_map.seen - (stage.name == "afferents") * one.metric_map.seen
     )
 
 
-@pytest.mark.parametrize("stage", SUMS)
+@pytest.mark.parametrize("stage", SHARED, ids=lambda stage: stage.name)
 def test_a_fork_has_learnt_nothing_of_its_stage_and_the_rest_as_well(
-    begun: dict[str, Network], stage: str
+    begun: dict[str, Network], stage: Stage
 ) -> None:
-    network = deepcopy(begun[stage])
+    network = deepcopy(begun[stage.name])
     fork = forked(network)
-    assert not differing(network, begun[stage])
-    assert differing(fork, network) <= {*SUMS[stage], *OWN}
-    assert all(not fork.get_buffer(name).any() for name in SUMS[stage])
+    assert not differing(network, begun[stage.name])
+    assert differing(fork, network) <= {*stage.sums, "views_seen", "metric_map.recent"}
+    assert all(not fork.get_buffer(name).any() for name in stage.sums)
     assert fork.metric_map.recent.isnan().all()
-    assert fork.views_seen == network.begins(stage)
+    assert fork.views_seen == network.begins(stage.name)
     assert fork.stage == stage
 
 
@@ -129,7 +131,7 @@ def test_many_views_end_a_stage_but_no_other(begun: dict[str, Network]) -> None:
     crowd = [forked(begun["olfaction"]) for _ in range(4)]
     for seed, each in enumerate(crowd):
         learn(each, stream(EPOCH, seed))
-        assert each.stage == "cells"
+        assert each.stage.name == "cells"
     first, *others = crowd
     for each in others:
         merge(first, each)
@@ -142,11 +144,11 @@ def test_many_views_end_a_stage_but_no_other(begun: dict[str, Network]) -> None:
 
 
 def test_what_cannot_be_added_up_is_refused(begun: dict[str, Network]) -> None:
-    for stage in set(STAGES) - set(SUMS):
-        with pytest.raises(NeuronsError, match=f"'{stage}' stage, in which units compete"):
-            forked(begun[stage])
+    for stage in set(STAGES) - set(SHARED):
+        with pytest.raises(NeuronsError, match=f"'{stage.name}' stage, in which units compete"):
+            forked(begun[stage.name])
         with pytest.raises(NeuronsError, match="units compete"):
-            merge(deepcopy(begun[stage]), begun[stage])
+            merge(deepcopy(begun[stage.name]), begun[stage.name])
     smelling = deepcopy(begun["olfaction"])
     with pytest.raises(NeuronsError, match="'olfaction' stage and the other in its 'metric_map'"):
         merge(smelling, begun["metric_map"])

@@ -1,7 +1,9 @@
 import pytest
 import torch
 
-from neurons.network import EPOCHS, STAGES, WINNERS, Network
+from neurons.circuit import Circuit
+from neurons.network import Network
+from neurons.stages import STAGES, OlfactionStage
 
 EPOCH = 400
 
@@ -44,7 +46,7 @@ def test_each_layer_learns_in_its_own_period_and_is_then_fixed(network: Network)
         assert network.stage == stage
         network.learn(*stream(50, number))  # what came before is settled with the first views of a stage
         before = {name: value.clone() for name, value in network.state_dict().items()}
-        for batch in range(EPOCHS[stage] * EPOCH // 50 - 1):
+        for batch in range(stage.epochs * EPOCH // 50 - 1):
             network.learn(*stream(50, 100 * number + batch))
         changed = {
             name
@@ -52,34 +54,20 @@ def test_each_layer_learns_in_its_own_period_and_is_then_fixed(network: Network)
             if not torch.equal(value.nan_to_num(), before[name].nan_to_num())
         }
         assert changed - {"views_seen"}
-        assert all(name.startswith(own[stage]) for name in changed - {"views_seen"})
+        assert all(name.startswith(own[stage.name]) for name in changed - {"views_seen"})
 
 
-def test_fewer_and_fewer_charts_learn_from_a_view(network: Network) -> None:
-    begun, lasts = EPOCHS["code"] * EPOCH, EPOCHS["charts"] * EPOCH
-    winners = []
-    for share in (0, 0.25, 0.5, 0.75, 1):
-        network.views_seen.fill_(begun + int(share * lasts))
-        winners.append(network._winners())
-    assert (winners[0], winners[-1]) == WINNERS
-    assert winners == sorted(winners, reverse=True)
-
-
-@pytest.mark.parametrize(
-    ("signs", "phases", "said"),
-    [
-        (1.0, 0.9, "too coarse"),
-        (0.9, 0.9999, "heading axes"),
-        (torch.nan, torch.nan, "no loop"),
-        (1.0, 0.9999, ""),
-    ],
-)
-def test_complaints(network: Network, signs: float, phases: float, said: str) -> None:
-    network.views_seen.fill_(sum(EPOCHS.values()) * EPOCH)
-    network.agreement = torch.tensor([signs, phases])
-    reason = network.diagnosis()
-    assert said in reason
-    assert bool(reason) == bool(said)
+def test_an_unfinished_network_is_not_to_be_trusted(network: Network) -> None:
+    network.agreement = torch.tensor([1.0, 0.9999])
+    for stage in STAGES[:-1]:
+        network.views_seen.fill_(network.begins(stage.name))
+        assert f"{stage.name!r} stage" in network.diagnosis()
+        assert f"{stage.name!r} stage" in network.metric_diagnosis()
+    network.views_seen.fill_(network.begins(STAGES[-1].name))
+    assert not network.diagnosis()
+    assert network.metric_diagnosis() == network.metric_map.diagnosis()
+    network.agreement = torch.tensor([1.0, 0.99])
+    assert network.diagnosis() == network.atlas_diagnosis()
 
 
 @pytest.mark.parametrize(("most", "charts"), [(100, 100), (500, 120), (60, 60)])
@@ -88,25 +76,25 @@ def test_charts_are_added_while_they_do_not_agree(
     network: Network, monkeypatch: pytest.MonkeyPatch, most: int, charts: int, *, better: bool
 ) -> None:
     found = torch.tensor([1.0, 0.9999 if better else 0.99])
-    orient = Network._orient
+    orient = OlfactionStage._orient
 
-    def disagree(self: Network) -> None:
-        orient(self)
-        self.agreement = found.clone()
+    def disagree(circuit: Circuit) -> None:
+        orient(circuit)
+        circuit.agreement = found.clone()
 
-    monkeypatch.setattr(Network, "_orient", disagree)
+    monkeypatch.setattr(OlfactionStage, "_orient", staticmethod(disagree))
     network.most_charts = most
-    while network.stage != "cells":
+    while network.stage.name != "cells":
         network.learn(*stream(50, int(network.views_seen)))
     grown = network.views_seen.clone()
     network.learn(*stream(50, 1))
     if better or charts == 60:
         assert len(network.charts) == 60
-        assert (network.stage, int(network.views_seen)) == ("cells", int(grown) + 50)
+        assert (network.stage.name, int(network.views_seen)) == ("cells", int(grown) + 50)
         return
     assert len(network.charts) == charts
-    assert (network.stage, int(network.views_seen)) == ("charts", network.begins("charts") + 50)
-    assert STAGES[int(network.stage_index)] == "charts"
+    assert (network.stage.name, int(network.views_seen)) == ("charts", network.begins("charts") + 50)
+    assert network.entered.name == "charts"
     assert network.agreement.isnan().all()
     found[1] = 0.9999
     while network.views_seen < network.begins("afferents") + 100:

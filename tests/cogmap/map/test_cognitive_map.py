@@ -1,7 +1,8 @@
 import copy
 import inspect
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numba
@@ -11,11 +12,11 @@ import torch
 
 from arena import Arena, Brownian, Camera, Recording, explore
 from cogmap import Activity, CogmapError, CognitiveMap, score
-from neurons.merging import SUMS
-from neurons.network import EPOCHS, IN_ORDER
+from neurons.circuit import Circuit
+from neurons.network import Network
+from neurons.stages import STAGES, Batch, Stage
 
 SHARED = 2000
-METRIC_MAP_BEGINS = sum(list(EPOCHS.values())[: list(EPOCHS).index(IN_ORDER)])
 Grow = Callable[..., CognitiveMap]
 
 
@@ -66,15 +67,34 @@ def test_another_seed_gives_another_map(walk: Recording, grow: Grow, cmap: Cogni
 def test_fit_is_epochs_of_partial_fit(walk: Recording, cmap: CognitiveMap) -> None:
     streamed = CognitiveMap(charts=cmap.charts, components=cmap.components, epoch=len(walk), seed=0)
     order = np.random.default_rng(0)
-    for stage, epochs in EPOCHS.items():
-        for _ in range(epochs):
-            rows = np.arange(len(walk)) if stage == IN_ORDER else order.permutation(len(walk))
+    for stage in STAGES:
+        for _ in range(stage.epochs):
+            rows = np.arange(len(walk)) if stage.in_order else order.permutation(len(walk))
             streamed.partial_fit(walk.views[rows], walk.odours[rows])
     assert streamed.trusted_ == cmap.trusted_
     some = slice(0, 200)
     a, b = streamed.perceive(walk.views[some]), cmap.perceive(walk.views[some])
     np.testing.assert_allclose(a.odour, b.odour, atol=1e-3)
     np.testing.assert_allclose(np.exp(1j * a.phase), np.exp(1j * b.phase), atol=1e-3)
+
+
+def test_fit_asks_the_stages_for_epochs_and_order(walk: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
+    smelt: list[torch.Tensor] = []
+
+    @dataclass(frozen=True)
+    class Listening(Stage):
+        name = "listening"
+        in_order = True
+        epochs: int = 2
+
+        def learn(self, circuit: Circuit, batch: Batch) -> None:  # noqa: ARG002
+            smelt.append(batch.log_odours)
+
+    stages = (*STAGES[:2], Listening(), *STAGES[2:])
+    monkeypatch.setattr("cogmap.map.cognitive_map.Network", partial(Network, stages=stages))
+    grown = CognitiveMap(charts=20, components=10).fit(walk.views[:300], walk.odours[:300])
+    np.testing.assert_array_equal(torch.cat(smelt), np.log(np.tile(walk.odours[:300], (2, 1))))
+    assert list(grown.seconds_) == ["retina", *(stage.name for stage in stages)]
 
 
 def test_small_map_knows_place_and_heading(walk: Recording, camera: Camera, cmap: CognitiveMap) -> None:
@@ -139,7 +159,7 @@ def test_order_teaches_a_metric_map_and_shuffled_views_do_no_harm(
 def test_views_that_do_not_follow_can_be_told(walk: Recording, cmap: CognitiveMap) -> None:
     grown = copy.deepcopy(cmap)
     for jump in (False, True):
-        grown._network.views_seen.fill_(METRIC_MAP_BEGINS * grown._network.epoch)
+        grown._network.views_seen.fill_(grown._network.begins("metric_map"))
         grown.partial_fit(walk.views[:20], walk.odours[:20], jump=True)
         grown.partial_fit(walk.views[20:21], walk.odours[20:21], jump=jump)
         assert grown._network.metric_map.recent.isnan().any() == jump
@@ -209,10 +229,10 @@ def grown(walk: Recording, *, split: int | None, folder: Path) -> CognitiveMap:
     """Learn epoch after epoch, by two explorers from `split` on in stages whose work can be shared."""
     cmap = CognitiveMap(charts=400, components=20, epoch=SHARED)
     order = np.random.default_rng(0)
-    for stage, epochs in EPOCHS.items():
-        for _ in range(epochs):
-            rows = np.arange(SHARED) if stage == IN_ORDER else order.permutation(SHARED)
-            if stage not in SUMS:
+    for stage in STAGES:
+        for _ in range(stage.epochs):
+            rows = np.arange(SHARED) if stage.in_order else order.permutation(SHARED)
+            if not stage.sums:
                 cmap.partial_fit(walk.views[rows], walk.odours[rows])
                 continue
             here, there = np.split(rows, [SHARED // 2 if split is None else split])
@@ -220,8 +240,8 @@ def grown(walk: Recording, *, split: int | None, folder: Path) -> CognitiveMap:
                 cmap.partial_fit(walk.views[here], walk.odours[here], jump=True)
                 cmap.partial_fit(walk.views[there], walk.odours[there], jump=True)
             else:
-                cmap.fork().save(folder / stage)
-                away = CognitiveMap.load(folder / stage)
+                cmap.fork().save(folder / stage.name)
+                away = CognitiveMap.load(folder / stage.name)
                 cmap.partial_fit(walk.views[here], walk.odours[here], jump=True)
                 away.partial_fit(walk.views[there], walk.odours[there], jump=True)
                 assert cmap.merge(away) is cmap

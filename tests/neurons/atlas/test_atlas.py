@@ -4,7 +4,7 @@ import torch
 from sklearn.neighbors import NearestNeighbors
 from torch import Tensor
 
-from neurons.atlas.atlas import OVERLAPS, POOL, Atlas
+from neurons.atlas.atlas import Atlas
 
 
 @pytest.fixture
@@ -18,21 +18,23 @@ def neighbours(centres: Tensor, count: int) -> tuple[np.ndarray, np.ndarray]:
     return distance, index
 
 
-def test_pool_same_as_scikit_learn(centres: Tensor) -> None:
-    _, index = neighbours(centres, POOL)
-    np.testing.assert_array_equal(Atlas.of(centres).pool, index)
+@pytest.mark.parametrize(("overlaps", "pool"), [(8, 12), (5, 3)])
+def test_pool_same_as_scikit_learn(centres: Tensor, overlaps: int, pool: int) -> None:
+    _, index = neighbours(centres, pool)
+    np.testing.assert_array_equal(Atlas.of(centres, overlaps=overlaps, pool=pool).pool, index)
 
 
-def test_edges_join_each_overlapping_pair_once(centres: Tensor) -> None:
-    _, index = neighbours(centres, OVERLAPS + 1)
+@pytest.mark.parametrize(("overlaps", "pool"), [(8, 12), (5, 3)])
+def test_edges_join_each_overlapping_pair_once(centres: Tensor, overlaps: int, pool: int) -> None:
+    _, index = neighbours(centres, overlaps + 1)
     trusted = {(min(k, j), max(k, j)) for k, row in enumerate(index.tolist()) for j in row[1:]}
-    edges = [tuple(edge) for edge in Atlas.of(centres).edges.tolist()]
+    edges = [tuple(edge) for edge in Atlas.of(centres, overlaps=overlaps, pool=pool).edges.tolist()]
     assert all(k < j for k, j in edges)
     assert edges == sorted(trusted)
 
 
 def test_spacing_is_root_mean_square_distance(centres: Tensor) -> None:
-    distance, _ = neighbours(centres, OVERLAPS + 1)
+    distance, _ = neighbours(centres, 9)
     spacing = np.sqrt(np.mean(distance[:, 1:] ** 2, axis=1))
     np.testing.assert_allclose(Atlas.of(centres).spacing, spacing, rtol=1e-5)
 

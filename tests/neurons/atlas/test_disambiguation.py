@@ -51,6 +51,20 @@ def test_a_place_that_is_covered_already_is_left_to_the_others(charts: tuple[Ten
     assert kept[(place - FIRST).norm(dim=1) < 0.5, 0].float().mean() < 0.02
 
 
+@pytest.mark.parametrize(
+    ("weak", "rival", "places"), [(0.5, 0.12, 2), (0.17, 0.12, 1), (0.5, 0.6, 1), (0.17, 0.05, 2)]
+)
+def test_a_faint_second_place_is_none(
+    charts: tuple[Tensor, Tensor, Tensor], weak: float, rival: float, places: int
+) -> None:
+    place, heading, edges = charts
+    rates = bump(place, FIRST) + weak * bump(place, SECOND)
+    kept = place_branches(rates[:, None], heading, edges, rival=rival)
+    assert kept.all() == (places == 1)
+    # now the faint place has no active charts at all
+    assert place_branches(rates[:, None], heading, edges, active=0.6, rival=rival).all()
+
+
 def test_headings_apart_at_one_place_are_not_two_places(charts: tuple[Tensor, Tensor, Tensor]) -> None:
     place, heading, edges = charts
     gaps = (heading % 3.1416 - 1.5708).abs() > 0.5

@@ -6,7 +6,7 @@ import torch
 from sklearn.linear_model import Ridge
 from torch import Tensor
 
-from neurons.atlas.metric_map import BLOCK, LAG, RIDGE, STRAIGHT, MetricMap, _patches
+from neurons.atlas.metric_map import MetricMap, _patches
 from neurons.layers.place_cells import PlaceCells
 
 SOURCES = torch.tensor([[-0.2, -0.1], [1.2, 0.1], [0.4, 1.3]])
@@ -60,8 +60,10 @@ def walked() -> Walk:
     return walk(6000, 0)
 
 
-def learn(cells: PlaceCells, walk: Walk, *, batch: int = 256, solve: bool = True) -> MetricMap:
-    metric_map = MetricMap(len(cells.centres), 3)
+def learn(
+    cells: PlaceCells, walk: Walk, *, batch: int = 256, solve: bool = True, **settings: float
+) -> MetricMap:
+    metric_map = MetricMap(len(cells.centres), 3, **settings)
     learnt = walk.heading - off(walk.place)
     for odour, heading in zip(walk.odour.split(batch), learnt.split(batch), strict=True):
         metric_map.partial_fit(cells, odour, heading)
@@ -87,27 +89,28 @@ def test_finds_the_map_and_the_offset(cells: PlaceCells, walked: Walk) -> None:
     laid, *_ = np.linalg.lstsq(affine, true, rcond=None)
     left = affine @ laid - true
     assert 1 - np.var(left) / np.var(true) > 0.999
-    assert abs(laid[0]) == pytest.approx(LAG * STEP, rel=0.03)
+    assert abs(laid[0]) == pytest.approx(metric_map.lag * STEP, rel=0.03)
     # a place averages over its surroundings, which shrinks the offset
     assert spread_of_angle(off(fresh.place) - offset) < 0.45 * spread_of_angle(off(fresh.place))
 
 
-def test_sums_over_straight_ways_only(cells: PlaceCells) -> None:
+@pytest.mark.parametrize(("lag", "straight"), [(3, 0.25), (5, 0.05)])
+def test_sums_over_straight_ways_only(cells: PlaceCells, lag: int, straight: float) -> None:
     some = walk(600, 2)
-    metric_map = learn(cells, some, solve=False)
+    metric_map = learn(cells, some, solve=False, lag=lag, straight=straight)
     share, patches = (part.double().numpy() for part in _patches(cells, some.odour))
     learnt = (some.heading - off(some.place)).double().numpy()
     spread, ahead = np.zeros((2, FEATURES, FEATURES)), np.zeros((2, CELLS, FEATURES), complex)
     pairs = [0, 0]
-    for t in range(len(learnt) - LAG):
-        turns = np.diff(learnt[t : t + LAG + 1])
-        if np.abs(np.angle(np.exp(1j * turns))).max() < STRAIGHT:
-            half = (t + LAG) // BLOCK % 2
-            moved = patches[t + LAG] - patches[t]
-            heading = np.exp(1j * learnt[t : t + LAG + 1])
+    for t in range(len(learnt) - lag):
+        turns = np.diff(learnt[t : t + lag + 1])
+        if np.abs(np.angle(np.exp(1j * turns))).max() < straight:
+            half = (t + lag) // 128 % 2
+            moved = patches[t + lag] - patches[t]
+            heading = np.exp(1j * learnt[t : t + lag + 1])
             u = np.mean((heading[1:] + heading[:-1]) / 2)
             spread[half] += np.outer(moved, moved)
-            ahead[half] += np.outer(share[t + 1 : t + LAG].mean(axis=0) * u.conj(), moved)
+            ahead[half] += np.outer(share[t + 1 : t + lag].mean(axis=0) * u.conj(), moved)
             pairs[half] += 1
     assert metric_map.counted[:, 1].tolist() == pairs
     assert metric_map.seen == len(learnt)
@@ -115,25 +118,27 @@ def test_sums_over_straight_ways_only(cells: PlaceCells) -> None:
     np.testing.assert_allclose(metric_map.ahead, np.stack([ahead.real, ahead.imag], axis=3), atol=1e-4)
 
 
+@pytest.mark.parametrize("ridge", [1e-3, 1.0])
 def test_map_is_ridge_regression_and_the_share_foretold_what_it_leaves(
-    cells: PlaceCells, walked: Walk
+    cells: PlaceCells, walked: Walk, ridge: float
 ) -> None:
-    metric_map = learn(cells, walked)
+    metric_map = learn(cells, walked, ridge=ridge)
+    lag, straight = metric_map.lag, metric_map.straight
     evidence = metric_map._evidence(slice(0, 2))
-    positions, turns = evidence.solve()
+    positions, turns = evidence.solve(ridge)
     torch.testing.assert_close(turns.abs(), torch.ones(CELLS, dtype=torch.double))
     rows, wanted = [], []
     share, patches = _patches(cells, walked.odour)
     learnt = walked.heading - off(walked.place)
-    for t in range(len(learnt) - LAG):
-        turned = learnt[t : t + LAG + 1].diff()
-        if torch.atan2(turned.sin(), turned.cos()).abs().max() < STRAIGHT:
-            heading = torch.polar(torch.ones(LAG + 1), learnt[t : t + LAG + 1])
-            f = share[t + 1 : t + LAG].mean(dim=0).cdouble() @ turns
-            rows.append(patches[t + LAG] - patches[t])
+    for t in range(len(learnt) - lag):
+        turned = learnt[t : t + lag + 1].diff()
+        if torch.atan2(turned.sin(), turned.cos()).abs().max() < straight:
+            heading = torch.polar(torch.ones(lag + 1), learnt[t : t + lag + 1])
+            f = share[t + 1 : t + lag].mean(dim=0).cdouble() @ turns
+            rows.append(patches[t + lag] - patches[t])
             wanted.append((heading[1:] + heading[:-1]).mean().cdouble() / 2 * f)
     v, u = torch.stack(rows), torch.stack(wanted)
-    ridge = Ridge(RIDGE * float(v.square().sum(dim=0).mean()), fit_intercept=False)
+    ridge = Ridge(ridge * float(v.square().sum(dim=0).mean()), fit_intercept=False)
     trusted = ridge.fit(v.double().numpy(), torch.view_as_real(u).numpy()).predict(v.double().numpy())
     mine = v.cdouble() @ positions
     np.testing.assert_allclose(torch.view_as_real(mine), trusted, atol=1e-3)
@@ -154,11 +159,12 @@ def test_any_batches_will_do(cells: PlaceCells, batch: int) -> None:
 
 
 def test_sums_of_two_walks_add_up_when_a_jump_is_told(cells: PlaceCells) -> None:
-    along = torch.stack([torch.linspace(0.1, 0.9, 2 * BLOCK), torch.full((2 * BLOCK,), 0.5)], dim=1)
+    # whole blocks, so that views fall to the same halves when counted on
+    along = torch.stack([torch.linspace(0.1, 0.9, 256), torch.full((256,), 0.5)], dim=1)
     one, other = (Walk(way, torch.zeros(len(way)), smell(way)) for way in (along, along.flip(0)))
     apart = [learn(cells, each, solve=False) for each in (one, other)]
     both = learn(cells, one, solve=False)
-    both.break_sequence()
+    both.recent.fill_(torch.nan)
     both.partial_fit(cells, other.odour, other.heading - off(other.place))
     for name in ("spread", "ahead", "shared", "counted", "seen"):
         total = sum(getattr(metric_map, name) for metric_map in apart)
@@ -188,6 +194,10 @@ def test_spinning_on_the_spot_teaches_nothing(cells: PlaceCells, turn: float, sa
     place = torch.full((3000, 2), 0.4)
     spin = Walk(place, turn * torch.arange(3000.0), smell(place) + noise)
     assert_left_out(learn(cells, spin), cells, spin.odour, said)
+
+
+def test_how_much_must_be_foretold_is_a_setting(cells: PlaceCells, walked: Walk) -> None:
+    assert_left_out(learn(cells, walked, least_r2=0.9999), cells, walked.odour, "less than 0.9999")
 
 
 def test_without_a_compass_there_is_nothing_to_learn(cells: PlaceCells, walked: Walk) -> None:

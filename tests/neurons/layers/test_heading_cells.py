@@ -4,12 +4,11 @@ import torch
 from scipy.stats import vonmises
 from torch import Tensor
 
-from neurons.layers.heading_cells import CONCENTRATION, HeadDirectionCells
-from neurons.layers.place_cells import PEAK
+from neurons.layers.heading_cells import HeadDirectionCells
 
 
-def blank(cells: int, seed: int = 0) -> HeadDirectionCells:
-    return HeadDirectionCells(cells, 1, generator=torch.Generator().manual_seed(seed))
+def blank(cells: int, seed: int = 0, **tuning: float) -> HeadDirectionCells:
+    return HeadDirectionCells(cells, 1, generator=torch.Generator().manual_seed(seed), **tuning)
 
 
 def headings(count: int, seed: int = 1) -> Tensor:
@@ -27,19 +26,20 @@ def test_directions_end_up_evenly_spaced(seed: int) -> None:
     assert gaps.std() < 0.5 * gaps.mean()
 
 
-def test_tuning_same_as_scipys_von_mises() -> None:
-    layer, probes = blank(10), headings(200)
+@pytest.mark.parametrize(("concentration", "peak"), [(5.0, 20.0), (2.0, 7.0)])
+def test_tuning_same_as_scipys_von_mises(concentration: float, peak: float) -> None:
+    layer, probes = blank(10, concentration=concentration, peak=peak), headings(200)
     for unit, preferred in enumerate(layer.preferred.tolist()):
-        bell = vonmises(CONCENTRATION, loc=preferred)
-        trusted = PEAK * bell.pdf(probes) / bell.pdf(preferred)
+        bell = vonmises(concentration, loc=preferred)
+        trusted = peak * bell.pdf(probes) / bell.pdf(preferred)
         np.testing.assert_allclose(layer.tuning(probes)[:, unit], trusted, atol=1e-3)
-    torch.testing.assert_close(layer.tuning(layer.preferred).diagonal(), torch.full((10,), 20.0))
+    torch.testing.assert_close(layer.tuning(layer.preferred).diagonal(), torch.full((10,), peak))
 
 
 def test_width_at_half_height() -> None:
     layer = blank(1)
     half = layer.preferred + torch.deg2rad(torch.tensor([61.0])) / 2
-    assert layer.tuning(half).item() == pytest.approx(PEAK / 2, rel=0.01)
+    assert layer.tuning(half).item() == pytest.approx(layer.peak / 2, rel=0.01)
 
 
 def test_whole_turns_do_not_matter() -> None:
@@ -70,13 +70,14 @@ def test_the_window_is_a_number_of_views(window: float) -> None:
     assert layer.preferred.item() == pytest.approx(trusted.item(), abs=1e-5)
 
 
-def test_only_the_nearest_units_learn() -> None:
+@pytest.mark.parametrize(("setting", "learnt"), [({}, [3, 4, 5]), ({"winners": 2}, [3, 4])])
+def test_only_the_nearest_units_learn(setting: dict[str, int], learnt: list[int]) -> None:
     layer = blank(8)
     layer.preferred = torch.linspace(-3, 3, 8)
     before = layer.preferred.clone()
-    layer.compete(torch.tensor([0.1]), window=100.0)
+    layer.compete(torch.tensor([0.1]), window=100.0, **setting)
     moved = ((layer.preferred - before).abs() > 1e-4).nonzero().flatten().tolist()
-    assert moved == [3, 4, 5]
+    assert moved == learnt
 
 
 def test_same_generator_same_bits() -> None:

@@ -4,7 +4,7 @@ import torch
 from sklearn.linear_model import Ridge
 from torch import Tensor
 
-from neurons.layers.olfaction import RIDGE, Olfaction
+from neurons.layers.olfaction import Olfaction
 
 CHARTS, ODORANTS, VIEWS = 6, 5, 900
 Batch = tuple[Tensor, Tensor, Tensor, Tensor]
@@ -28,29 +28,31 @@ def batch(truth: tuple[Tensor, Tensor]) -> Batch:
     return chart, weight, coordinates, intercepts + torch.einsum("nwd,ndo->no", coordinates, jacobians)
 
 
-def smelt(*batches: Batch) -> Olfaction:
-    layer = Olfaction(CHARTS, ODORANTS)
+def smelt(*batches: Batch, **prior: float) -> Olfaction:
+    layer = Olfaction(CHARTS, ODORANTS, **prior)
     for each in batches:
         layer.partial_fit(*each)
     return layer
 
 
 def test_recovers_an_affine_map(batch: Batch, truth: tuple[Tensor, Tensor]) -> None:
-    intercepts, jacobians = smelt(batch).solve()
-    bias = 2 * RIDGE * truth[1].abs().max().item()
+    layer = smelt(batch)
+    intercepts, jacobians = layer.solve()
+    bias = 2 * layer.ridge * truth[1].abs().max().item()
     torch.testing.assert_close(intercepts[:-1], truth[0][:-1], atol=bias, rtol=0)
     torch.testing.assert_close(jacobians[:-1], truth[1][:-1], atol=bias, rtol=0)
 
 
-def test_same_as_ridge_regression(batch: Batch) -> None:
+@pytest.mark.parametrize("ridge", [1e-3, 1.0])
+def test_same_as_ridge_regression(batch: Batch, ridge: float) -> None:
     chart, weight, coordinates, clean = batch
     odour = clean + 0.2 * torch.randn(clean.shape, generator=torch.Generator().manual_seed(2))
-    intercepts, jacobians = smelt((chart, weight, coordinates, odour)).solve()
+    intercepts, jacobians = smelt((chart, weight, coordinates, odour), ridge=ridge).solve()
     for k in range(CHARTS - 1):
         mine = (chart == k).flatten().numpy()
         x, y = coordinates[mine, 0].double().numpy(), odour[mine].double().numpy()
         w = weight[mine, 0].double().numpy()
-        penalty = RIDGE * np.mean(w @ x**2)
+        penalty = ridge * np.mean(w @ x**2)
         trusted = Ridge(alpha=penalty).fit(x, y, sample_weight=w)
         np.testing.assert_allclose(intercepts[k], trusted.intercept_, atol=1e-5)
         np.testing.assert_allclose(jacobians[k].T, trusted.coef_, atol=1e-4)

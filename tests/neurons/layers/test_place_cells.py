@@ -4,7 +4,7 @@ import torch
 from scipy.stats import multivariate_normal
 from torch import Tensor
 
-from neurons.layers.place_cells import BLOCK, FLATNESS, PEAK, PlaceCells
+from neurons.layers.place_cells import BLOCK, PlaceCells
 
 
 def smells(count: int, stretch: tuple[float, float] = (1.0, 1.0), seed: int = 0) -> Tensor:
@@ -12,8 +12,8 @@ def smells(count: int, stretch: tuple[float, float] = (1.0, 1.0), seed: int = 0)
     return uniform * torch.tensor(stretch)
 
 
-def grown(cells: int, odours: Tensor, *, epochs: int = 4) -> PlaceCells:
-    layer = PlaceCells(cells, 1, odours.shape[1])
+def grown(cells: int, odours: Tensor, *, epochs: int = 4, **settings: float) -> PlaceCells:
+    layer = PlaceCells(cells, 1, odours.shape[1], **settings)
     for _ in range(epochs):
         for batch in odours.split(200):
             layer.compete(batch, window=float(len(odours)))
@@ -35,15 +35,16 @@ def test_peak_at_the_centre() -> None:
     assert layer.tuning(smells(500, seed=1)).max() <= 20
 
 
-def test_tuning_same_as_scipys_gaussian() -> None:
-    layer = grown(20, smells(2000, (1.0, 0.4)))
+@pytest.mark.parametrize(("peak", "flatness"), [(20.0, 0.05), (7.0, 0.5)])
+def test_tuning_same_as_scipys_gaussian(peak: float, flatness: float) -> None:
+    layer = grown(20, smells(2000, (1.0, 0.4)), peak=peak, flatness=flatness)
     probes = smells(50, (1.0, 0.4), seed=5)
     rates = layer.tuning(probes).numpy()
     for unit in range(20):
         covariance = layer.covariances[unit].double().numpy()
-        flat = FLATNESS * np.trace(covariance) / 2
+        flat = flatness * np.trace(covariance) / 2
         bell = multivariate_normal(layer.centres[unit].double().numpy(), covariance + flat * np.eye(2))
-        trusted = PEAK * bell.pdf(probes.double().numpy()) / bell.pdf(bell.mean)
+        trusted = peak * bell.pdf(probes.double().numpy()) / bell.pdf(bell.mean)
         np.testing.assert_allclose(rates[:, unit], trusted, atol=1e-3)
 
 
@@ -53,10 +54,10 @@ def test_tuning_far_from_the_origin_is_as_exact_as_doubles() -> None:
     doubled = PlaceCells(20, 1, 3).double()
     doubled.load_state_dict(layer.state_dict())
     deviation = odours.double()[:, None] - doubled.centres
-    flat = FLATNESS / 3 * torch.einsum("coo->c", doubled.covariances)[:, None, None] * torch.eye(3)
+    flat = layer.flatness / 3 * torch.einsum("coo->c", doubled.covariances)[:, None, None] * torch.eye(3)
     exponent = torch.einsum("nco,cop,ncp->nc", deviation, (doubled.covariances + flat).inverse(), deviation)
     torch.testing.assert_close(
-        layer.tuning(odours).double(), PEAK * torch.exp(-exponent / 2), atol=1e-4, rtol=0
+        layer.tuning(odours).double(), layer.peak * torch.exp(-exponent / 2), atol=1e-4, rtol=0
     )
 
 
@@ -66,12 +67,13 @@ def test_a_strange_smell_excites_nothing_and_leaves_no_subnormal_rate() -> None:
     assert (rates > torch.finfo(torch.float32).tiny).all()
 
 
-def test_six_units_learn_from_one_smell() -> None:
+@pytest.mark.parametrize(("setting", "winners"), [({}, 6), ({"winners": 2}, 2)])
+def test_the_nearest_units_learn_from_one_smell(setting: dict[str, int], winners: int) -> None:
     odours = smells(31)
     layer = PlaceCells(30, 1, 2)
-    layer.compete(odours, window=100.0)
+    layer.compete(odours, window=100.0, **setting)
     learnt = (layer.centres - odours[:30]).norm(dim=1).nonzero().flatten().tolist()
-    nearest = np.argsort(np.linalg.norm(odours[:30] - odours[30], axis=1))[:6]
+    nearest = np.argsort(np.linalg.norm(odours[:30] - odours[30], axis=1))[:winners]
     assert learnt == sorted(nearest.tolist())
 
 

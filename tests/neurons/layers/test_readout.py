@@ -8,7 +8,7 @@ from torch import Tensor
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.synchronisation import Compass
 from neurons.layers.charts import Charts
-from neurons.layers.readout import BREADTH, Readout
+from neurons.layers.readout import Readout
 
 SLOPES = torch.tensor([[1.0, -0.5, 2.0], [0.3, 1.5, -1.0]])
 OFFSETS = torch.tensor([0.5, -2.0, 1.0])
@@ -60,19 +60,21 @@ def test_heading_and_odour_of_codes_held_out(
     torch.testing.assert_close(odour, smell(unseen), atol=1e-4, rtol=0)
 
 
+@pytest.mark.parametrize("settings", [{}, {"winners": 5, "breadth": 0.3}])
 def test_weights_are_gaussian_in_distance(
     tiling: Tiling,
-    settled: Callable[[Compass | None], Readout],
     unseen: Tensor,
     cylinder: Callable[[Tensor], Tensor],
+    settings: dict[str, float],
 ) -> None:
     _, charts = tiling
-    readout, codes = settled(None), cylinder(unseen)
+    readout, codes = Readout(len(charts), 4, 3, **settings), cylinder(unseen)
+    readout.spacing = Atlas.of(charts.centres).spacing
     chart, weight = readout.excite(charts, codes)
     torch.testing.assert_close(weight.sum(dim=1), torch.ones(len(codes)))
-    assert chart.shape == (500, 8)
+    assert chart.shape == (500, settings.get("winners", 8))
     distance = torch.cdist(codes.double(), charts.centres.double()).gather(1, chart).numpy()
-    width = BREADTH * Atlas.of(charts.centres).spacing.double().numpy()[chart.numpy()]
+    width = settings.get("breadth", 0.7) * Atlas.of(charts.centres).spacing.double().numpy()[chart.numpy()]
     activity = np.exp(-(distance**2) / (2 * width**2))
     np.testing.assert_allclose(weight, activity / activity.sum(axis=1, keepdims=True), atol=1e-4)
 

@@ -23,12 +23,12 @@ def ring_blur(strip: np.ndarray, sigma: float) -> np.ndarray:
     return gaussian_filter1d(strip, sigma, axis=-1, mode="wrap", radius=45)
 
 
-def by_opencv_and_scipy(view: np.ndarray) -> np.ndarray:
+def by_opencv_and_scipy(view: np.ndarray, faintest: float = 0.0) -> np.ndarray:
     small = cv2.resize(view.astype(np.float64), (90, 15), interpolation=cv2.INTER_AREA)
     colours = small.transpose(0, 2, 1).reshape(45, 90)
     strip = ring_blur(colours, 3.0) - ring_blur(colours, 10.0)
     contrast = np.sqrt(ring_blur((strip**2).mean(axis=0), 2.0))
-    return ring_blur(strip / (contrast + 0.1 * contrast.mean()), 3.0).ravel()
+    return ring_blur(strip / (contrast + 0.1 * contrast.mean() + faintest), 3.0).ravel()
 
 
 @pytest.mark.parametrize(("height", "width"), [(15, 90), (30, 360), (37, 200)])
@@ -38,6 +38,13 @@ def test_same_as_opencv_and_scipy(height: int, width: int) -> None:
     trusted = np.array([by_opencv_and_scipy(view) for view in views.numpy()])
     np.testing.assert_allclose(strips, trusted, atol=2e-3)
     assert trusted.std() > 0.1
+
+
+def test_contrasts_too_faint_are_amplified_no_further() -> None:
+    views = scenes(3, 15, 90)
+    strips = Retina(15, 90, faintest=20.0)(views).numpy()
+    trusted = np.array([by_opencv_and_scipy(view, faintest=20.0) for view in views.numpy()])
+    np.testing.assert_allclose(strips, trusted, atol=2e-3)
 
 
 def test_turning_rolls_the_columns() -> None:

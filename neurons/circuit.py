@@ -1,0 +1,111 @@
+"""The circuit: all layers, and the way of a view through them."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from neurons.atlas.atlas import Atlas
+from neurons.atlas.metric_map import MetricMap
+from neurons.layers.afferents import Afferents
+from neurons.layers.charts import Charts
+from neurons.layers.heading_cells import HeadDirectionCells
+from neurons.layers.olfaction import Olfaction
+from neurons.layers.place_cells import PlaceCells
+from neurons.layers.readout import ChartActivity, Readout
+from neurons.layers.sanger import Sanger
+
+
+class Recalled(NamedTuple):
+    """What the atlas recalls at the sight of views."""
+
+    excited: ChartActivity
+    heading: Float[Tensor, "views"]
+    """In the map's own frame, rad; NaN without a compass."""
+    odour: Float[Tensor, "views odorants"]
+    """Log concentrations."""
+
+
+class Circuit(nn.Module):
+    """Code, charts, olfaction, readout, two populations and a metric map.
+
+    Parameters
+    ----------
+    features, odorants
+        Inputs.
+    charts, components, place_cells, heading_cells
+        Sizes.
+    most_charts
+        Up to how many charts can be added.
+    generator
+        Draws the initial weights.
+    least_eigenvalue
+        Least agreement of the phases in an atlas to be trusted; at .998 headings have been seen 12° off.
+    least_sign_agreement
+        Least agreement of the heading axes on a direction of turning: one overlap in 400 may be reversed.
+    """
+
+    agreement: Tensor
+
+    def __init__(
+        self,
+        features: int,
+        odorants: int,
+        *,
+        charts: int,
+        most_charts: int,
+        components: int,
+        place_cells: int,
+        heading_cells: int,
+        generator: torch.Generator,
+        least_eigenvalue: float = 0.999,
+        least_sign_agreement: float = 0.995,
+    ) -> None:
+        super().__init__()
+        self.most_charts = most_charts
+        self.least_eigenvalue = least_eigenvalue
+        self.least_sign_agreement = least_sign_agreement
+        self.code = Sanger(features, components, generator=generator)
+        self.charts = Charts(charts, components, generator=generator)
+        self.olfaction = Olfaction(charts, odorants)
+        self.readout = Readout(charts, components, odorants)
+        self.place = PlaceCells(place_cells, charts, odorants)
+        self.heading = HeadDirectionCells(heading_cells, charts, generator=generator)
+        self.metric_map = MetricMap(place_cells, odorants)
+        self.register_buffer("agreement", torch.full((2,), torch.nan))
+
+    def recall(self, strips: Float[Tensor, "views features"]) -> Recalled:
+        """Tell heading and smell from sight."""
+        codes = self.code(strips)
+        excited = self.readout.excite(self.charts, codes)
+        return Recalled(excited, *self.readout(self.charts, codes, excited))
+
+    def atlas_diagnosis(self) -> str:
+        """Say in what the charts do not agree, or nothing when they do."""
+        signs, phases = self.agreement.tolist()
+        if not math.isfinite(phases):
+            return "no loop of its charts closes after a turn; use more charts or more views"
+        if phases < self.least_eigenvalue:
+            return (
+                f"the phases of its charts agree only to {phases:.4f}, below {self.least_eigenvalue}: "
+                "the atlas is too coarse; use more charts"
+            )
+        if signs < self.least_sign_agreement:
+            return f"its heading axes agree only to {signs:.3f}; use more charts or more odour sources"
+        return ""
+
+    def add_charts(self) -> None:
+        """Double the charts where they lie farthest apart; what stands on them is as before any view."""
+        count, (cells, odorants) = len(self.charts), self.place.centres.shape
+        self.charts.grow(Atlas.of(self.charts.centres).edges, min(count, self.most_charts - count))
+        count, components = self.charts.centres.shape
+        self.olfaction = Olfaction(count, odorants)
+        self.readout = Readout(count, components, odorants)
+        self.place = PlaceCells(cells, count, odorants)
+        # preferred directions stay as drawn: a map that was saved and loaded has no generator to go on with
+        self.heading.afferents = Afferents(count, len(self.heading.preferred))
+        self.agreement.fill_(torch.nan)
