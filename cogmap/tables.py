@@ -1,6 +1,6 @@
 """Results as a table that reads well in a terminal."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import pandas as pd
@@ -11,6 +11,12 @@ UNITS = {"_m": "m", "_deg": "°", "_bytes": "bytes"}
 def as_table(metrics: Mapping[str, Any]) -> str:
     """Lay out a record as lines of name, value and unit; names of nested records are joined by dots."""
     return pd.DataFrame(as_rows(metrics), columns=["figure", "value", "unit"]).to_string(index=False)
+
+
+def as_markdown(rows: Sequence[Mapping[str, str]]) -> str:
+    """Lay out records of the same keys as a table in Markdown."""
+    lines = [list(rows[0]), ["---"] * len(rows[0]), *(list(row.values()) for row in rows)]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
 def as_rows(metrics: Mapping[str, Any]) -> list[tuple[str, str, str]]:

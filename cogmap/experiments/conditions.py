@@ -44,6 +44,8 @@ class Conditions:
     """Way to move; the experiment's own when None."""
     camera: Camera | None = None
     """To look through; the experiment's own when None."""
+    body: Disc | None = None
+    """To move; the experiment's own when None."""
     map: Mapping[str, Any] = field(default_factory=dict)
     """Parameters of `CognitiveMap` that differ from the experiment's own."""
     extra_rooms: tuple[Arena, ...] = ()
@@ -58,12 +60,12 @@ class Conditions:
         views: int | None = None,
         fresh: bool = False,
     ) -> Recording:
-        """Walk through the room, by `motion` and `camera` where the setting has none of its own.
+        """Walk through the room, by `motion`, `camera` and `body` where the setting has none of its own.
 
         A fresh walk is another, of `FRESH` views, or of as many as are learnt from when these are fewer. The
         walk is the same whatever the camera. From a library, it is taken once: who else wants it waits.
         """
-        way, eye = self.motion or motion, self.camera or camera
+        way, eye, body = self.motion or motion, self.camera or camera, self.body or body
         if views is None:
             views = min(FRESH, self.views) if fresh else self.views
         seed = self.seed + FRESH_SEED * fresh

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import resource
 import sys
 import time
@@ -14,9 +13,10 @@ from typing import Any
 
 import numpy as np
 from jaxtyping import Float
+from matplotlib.figure import Figure
 
 from arena import Arena, Brownian, Camera, Disc, Recording, explore
-from cogmap.atomic import METRICS, result_folder
+from cogmap.atomic import result_folder
 from cogmap.cells import (
     fit_heading_frame,
     fit_map_frame,
@@ -34,6 +34,7 @@ from cogmap.evaluation.homology_of_map import homologies
 from cogmap.evaluation.scoring import score
 from cogmap.experiments.conditions import FRESH, FRESH_SEED, poses_of
 from cogmap.experiments.provenance import write_provenance
+from cogmap.experiments.result import Result
 from cogmap.inputs import checked_count
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import CognitiveMap
@@ -119,6 +120,7 @@ def demo(
     checked_count("views", views, 20)
     charts = min(3000, views // 3) if charts is None else charts
     clock = Stopwatch()
+    drawings: dict[str, Figure] = {}
     with nullcontext() if out is None else result_folder(out) as folder:
         with clock("explore"):
             walks = [
@@ -138,7 +140,7 @@ def demo(
             bars = homologies(cmap.encode(learnt.walk.views), learnt.activity, landmarks=landmarks, seed=seed)
         if folder is not None:
             with clock("figures"):
-                _draw(folder, room, learnt, fresh, bars)
+                drawings = _draw(room, learnt, fresh, bars)
                 cmap.save(folder / "map")
         metrics = {
             "arena": room.name,
@@ -157,7 +159,8 @@ def demo(
             "peak_memory_bytes": _peak_memory(),
         }
         if folder is not None:
-            (folder / METRICS).write_text(json.dumps(metrics, indent=2) + "\n", encoding="utf-8")
+            captions = {name: _captions()[name] for name in drawings}
+            Result(metrics, figures=drawings, captions=captions).write(folder)
             overrides = {} if landmarks == LANDMARKS else {"landmarks": landmarks}
             write_provenance(folder, ("demo",), room, views=views, charts=charts, seed=seed, **overrides)
         return metrics
@@ -176,8 +179,7 @@ def _score(room: Arena, learnt: Outing, fresh: Outing) -> dict[str, float]:
     }
 
 
-def _draw(folder: Path, room: Arena, learnt: Outing, fresh: Outing, bars: dict[str, Betti]) -> None:
-    """Write the figures."""
+def _draw(room: Arena, learnt: Outing, fresh: Outing, bars: dict[str, Betti]) -> dict[str, Figure]:
     positions, headings = fresh.poses[:, :2], fresh.poses[:, 2]
     rates = fresh.activity
     frame = fit_heading_frame(learnt.activity.phase, learnt.poses[:, 2])
@@ -203,8 +205,20 @@ def _draw(folder: Path, room: Arena, learnt: Outing, fresh: Outing, bars: dict[s
     if not np.isnan(rates.position).all():
         laid = place_map(rates.position, fit_map_frame(learnt.activity.position, known))
         drawings["metric_map"] = plot_metric_map(laid, positions)
-    for name, figure in drawings.items():
-        figure.savefig(folder / f"{name}.png")
+    return drawings
+
+
+def _captions() -> dict[str, str]:
+    return {
+        "room": "The room from above, with the way through it",
+        "views": "Some of the views, with where they were taken",
+        "place_cells": "Rate maps of place cells, rate against position",
+        "heading_cells": "Tuning curves of head-direction cells, rate against heading",
+        "compass": "Learnt against true heading, the same colour for the same direction",
+        "position": "Recalled against true position",
+        "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
+        "metric_map": "Where the map believes it is, laid over where it truly is",
+    }
 
 
 def _peak_memory() -> int:

@@ -1,4 +1,4 @@
-from cogmap.tables import as_table
+from cogmap.tables import as_markdown, as_table
 
 
 def test_every_figure_has_a_line_with_its_unit() -> None:
@@ -10,3 +10,10 @@ def test_every_figure_has_a_line_with_its_unit() -> None:
     assert ["seconds.learn", "3", "s"] in lines
     assert ["betti_place", "[1,", "0,", "0]"] in lines
     assert "reason" not in table
+
+
+def test_markdown_has_a_row_for_each_record() -> None:
+    rows = [{"name": "one", "size": "1"}, {"name": "two", "size": "2"}]
+    assert as_markdown(rows).splitlines() == [
+        "| name | size |", "| --- | --- |", "| one | 1 |", "| two | 2 |"
+    ]  # fmt: skip

@@ -12,6 +12,7 @@ from arena import Brownian, Camera, Recording
 from cogmap.evaluation.populations import MOST_CHARTS, GroundTruth, grow_map, perceive, trust_report
 from cogmap.evaluation.scoring import score
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cases
 
@@ -25,6 +26,7 @@ RECEPTORS = 90
 LABELS = {"columns": "columns of the eye", "charts": "charts"}
 
 
+@experiment(room="furnished", views=17_000, takes=("nose", "motion", "map"))
 def acuity(conditions: Conditions) -> Result:
     """Learn the same walk through coarser and coarser eyes, and with fewer and more charts.
 
@@ -52,6 +54,9 @@ def acuity(conditions: Conditions) -> Result:
         metrics=metrics,
         tables={"cases": table},
         figures={"acuity": plot_cases(table, LABELS, doubling=True)},
+        captions={
+            "acuity": "Errors and cells with ever more columns of the eye, and with ever more charts",
+        },
     )
 
 

@@ -8,10 +8,12 @@ from arena import Brownian, Camera
 from cogmap.evaluation.populations import GroundTruth, as_one_table, grow_map, map_correlations, perceive
 from cogmap.evaluation.scoring import score
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cell_types, plot_examples
 
 
+@experiment(room="furnished", views=17_000, takes=("nose", "motion", "camera", "map"))
 def darkness(conditions: Conditions) -> Result:
     """Take one sense away from a map that has learnt with both.
 
@@ -52,5 +54,9 @@ def darkness(conditions: Conditions) -> Result:
             "examples": plot_examples(
                 {name: truth.tuning(found) for name, found in rates.items() if np.nan_to_num(found).any()}
             ),
+        },
+        captions={
+            "cells": "What each cell tells of position and of heading, by population",
+            "examples": "Six cells of each population: rate maps, and rate by heading",
         },
     )

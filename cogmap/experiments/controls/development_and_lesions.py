@@ -15,6 +15,7 @@ from arena import Brownian, Camera
 from cogmap.cells.measures.correlations import correlations
 from cogmap.evaluation.populations import GroundTruth, as_one_table, grow_map, perceive, trust_report
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.lesions import afferent_weights, lesioned, weights_of, with_blank_afferents
@@ -47,7 +48,8 @@ class Seen(NamedTuple):
     test: Rates
 
 
-def development_and_lesions(conditions: Conditions) -> Result:
+@experiment(room="furnished", views=17_000, takes=("nose", "camera", "map"))
+def development(conditions: Conditions) -> Result:
     """Look at the weights from which place cells and head-direction cells fire.
 
     `growth`: the afferents of a grown map are blanked, and learn from the same walk once more while smell and
@@ -116,6 +118,10 @@ def development_and_lesions(conditions: Conditions) -> Result:
         figures={
             "afferents": plot_afferents(weights["place"], weights["heading"], preferred),
             "courses": plot_courses(tables["growth"], tables["silencing"]),
+        },
+        captions={
+            "afferents": "Where the charts lie that a cell fires from, by the strength of their weights",
+            "courses": "How the cells come with views, and go with charts that fall silent",
         },
     )
 

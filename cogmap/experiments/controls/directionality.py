@@ -16,6 +16,7 @@ from cogmap.evaluation.populations import (
     trust_report,
 )
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cell_types, plot_examples
 
@@ -24,6 +25,7 @@ DIRECTIONAL = 0.5
 WALKS: dict[str, Motion] = {"open_field": Brownian(), "corridor": Track()}
 
 
+@experiment(room="furnished", views=17_000, takes=("nose", "camera", "map"))
 def directionality(conditions: Conditions) -> Result:
     """Learn the same room all over and on a straight path, and ask in which direction its place cells fire.
 
@@ -68,6 +70,13 @@ def directionality(conditions: Conditions) -> Result:
         figures={
             "cells": plot_cell_types(table),
             **{f"examples_{name}": plot_examples(batch) for name, batch in drawn.items()},
+        },
+        captions={
+            "cells": "What each cell tells of position and of heading, by walk and population",
+            **{
+                f"examples_{name}": f"Six cells of each population in the {name.replace('_', ' ')}"
+                for name in drawn
+            },
         },
     )
 

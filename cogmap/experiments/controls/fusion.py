@@ -15,10 +15,12 @@ from cogmap.evaluation.populations import (
 )
 from cogmap.evaluation.scoring import score
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cell_types, plot_examples
 
 
+@experiment(room="furnished", views=17_000, takes=("nose", "motion", "camera", "map"))
 def fusion(conditions: Conditions) -> Result:
     """Compare cells that see, cells that smell, and cells that see what smell has taught them.
 
@@ -69,5 +71,9 @@ def fusion(conditions: Conditions) -> Result:
         figures={
             "cells": plot_cell_types(table),
             "examples": plot_examples({name: truth.tuning(found) for name, found in rates.items()}),
+        },
+        captions={
+            "cells": "What each cell tells of position and of heading, by population",
+            "examples": "Six cells of each population: rate maps, and rate by heading",
         },
     )

@@ -12,6 +12,7 @@ from arena import Arena, Brownian, Camera, Nose, Recording
 from cogmap.evaluation.populations import GroundTruth, grow_map, perceive, trust_report
 from cogmap.evaluation.scoring import score
 from cogmap.experiments.conditions import FRESH_SEED, Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cases
 
@@ -22,6 +23,7 @@ USUAL_SOURCES, USUAL_NOISE = 3, 0.1
 LABELS = {"sources": "odour sources", "noise": "noise of the nose"}
 
 
+@experiment(room="furnished", views=17_000, takes=("motion", "camera", "map"))
 def odour_ablation(conditions: Conditions) -> Result:
     """Learn the same views with one to four odour sources, and with a nose of no noise to one of 30 %.
 
@@ -46,7 +48,14 @@ def odour_ablation(conditions: Conditions) -> Result:
             for count, noise in cases
         ]
     )
-    return Result(metrics=metrics, tables={"cases": table}, figures={"sources": plot_cases(table, LABELS)})
+    return Result(
+        metrics=metrics,
+        tables={"cases": table},
+        figures={"sources": plot_cases(table, LABELS)},
+        captions={
+            "sources": "What the cells tell of place with more sources of smell, and with a noisier nose",
+        },
+    )
 
 
 def smell(room: Arena, walk: Recording, *, count: int, noise: float, seed: int) -> np.ndarray:

@@ -19,6 +19,7 @@ from cogmap.evaluation.populations import (
 )
 from cogmap.evaluation.scoring import score
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_cell_types
 
@@ -40,7 +41,8 @@ WALKS = {
 }
 
 
-def slow_feature_comparison(conditions: Conditions) -> Result:
+@experiment(room="furnished", views=17_000, takes=("nose", "camera", "map"))
+def slow_features(conditions: Conditions) -> Result:
     """Learn the same room on four walks, by slowness and by smell.
 
     Slow feature analysis takes the Sanger codes of the views in their order; the fusion takes views and
@@ -61,6 +63,11 @@ def slow_feature_comparison(conditions: Conditions) -> Result:
         figures={
             kind.replace(" ", "_"): plot_cell_types(table[table["population"].str.endswith(kind)])
             for kind in ("slow features", "fused place", "fused heading")
+        },
+        captions={
+            "slow_features": "What each slow feature tells of place and heading, by walk",
+            "fused_place": "What each place cell of the map tells of place and heading, by walk",
+            "fused_heading": "What each head-direction cell of the map tells of place and heading, by walk",
         },
     )
 

@@ -14,6 +14,7 @@ from cogmap.cells import fit_heading_frame, heading_errors
 from cogmap.evaluation.populations import GroundTruth, as_one_table
 from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.paper.distinguishability import retina_codes
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.graph import nearest_points, neighbour_graph
 from cogmap.plots import plot_cell_types, plot_examples, plot_goals
@@ -36,6 +37,7 @@ PEAK = 20.0
 """Rate on the ring itself, Hz."""
 
 
+@experiment(room="furnished", views=17_000, takes=("camera",))
 def goals(conditions: Conditions) -> Result:
     """Fig. 8: climb an odour to its maximum, look around there, be pushed away, come back; move the goal.
 
@@ -101,6 +103,11 @@ def goals(conditions: Conditions) -> Result:
             "goals": plot_goals(conditions.room, views),
             "cells": plot_cell_types(table),
             "examples": plot_examples({name: truth.tuning(found) for name, found in rates.items()}),
+        },
+        captions={
+            "goals": "The views at each goal, as strokes that point where the body looks",
+            "cells": "What each cell tells of position and of heading, by population",
+            "examples": "Six cells of each population: rate maps, and rate by heading",
         },
     )
 

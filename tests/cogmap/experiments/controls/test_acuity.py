@@ -4,7 +4,7 @@ import pytest
 from arena import Arena
 from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.controls.acuity import explore_at_acuity
-from cogmap.experiments.registry import experiment
+from cogmap.experiments.registry import run_experiment
 
 
 def test_a_coarse_eye_has_large_pixels_on_the_same_walk() -> None:
@@ -24,7 +24,7 @@ def test_every_eye_and_number_of_charts_is_a_case(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("cogmap.experiments.controls.acuity.COLUMNS", (12, 90))
     monkeypatch.setattr("cogmap.experiments.controls.acuity.USUAL_COLUMNS", 90)
     monkeypatch.setattr("cogmap.experiments.controls.acuity.CHARTS", (0.125, 1.0))
-    result = experiment("acuity", views=1600, map={"place_cells": 60})
+    result = run_experiment("acuity", views=1600, map={"place_cells": 60})
     cases = result.tables["cases"].set_index(["columns", "charts"])
     assert sorted(cases.index) == [(12, 533), (90, 67), (90, 533)]
     blurred, coarse, usual = (cases.loc[case] for case in [(12, 533), (90, 67), (90, 533)])
