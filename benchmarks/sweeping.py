@@ -8,7 +8,7 @@ import numpy as np
 
 from benchmarks.timing import Figures
 from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.registry import EXPERIMENTS, Experiment
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.sweeps import Plan, sweep
 
@@ -16,12 +16,14 @@ SECONDS, WORKERS, POINTS = 2.0, 2, 48
 NOISES = np.linspace(0.05, 0.3, 24).tolist()
 
 
+@experiment(room="furnished", views=200)
 def waiting(conditions: Conditions) -> Result:
     """Take two seconds and nothing of the machine."""
     time.sleep(SECONDS)
     return Result({"seed": conditions.seed})
 
 
+@experiment(room="furnished", views=200)
 def computing(conditions: Conditions) -> Result:
     """Take two seconds of one core."""
     started = time.thread_time()
@@ -39,7 +41,6 @@ def sweeping() -> Figures:
     """
     figures: Figures = {"workers": WORKERS, "points": POINTS, "seconds_a_point": SECONDS}
     for conduct in (waiting, computing):
-        EXPERIMENTS[conduct.__name__] = Experiment(conduct, "furnished", 200)
         plan = Plan.create(experiment=conduct.__name__, grid={"views": list(range(200, 200 + POINTS))})
         figures[f"efficiency_{conduct.__name__}"] = POINTS * SECONDS / WORKERS / spent(plan, WORKERS)
     fusions = Plan.create(

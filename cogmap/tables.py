@@ -1,6 +1,6 @@
 """Tables of results: as Parquet and CSV on disk, and as lines that read well in a terminal."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,12 @@ def write_table(table: pd.DataFrame, path: Path) -> None:
 def as_table(metrics: Mapping[str, Any]) -> str:
     """Lay out a record as lines of name, value and unit; names of nested records are joined by dots."""
     return pd.DataFrame(as_rows(metrics), columns=["figure", "value", "unit"]).to_string(index=False)
+
+
+def as_markdown(rows: Sequence[Mapping[str, str]]) -> str:
+    """Lay out records of the same keys as a table in Markdown."""
+    lines = [list(rows[0]), ["---"] * len(rows[0]), *(list(row.values()) for row in rows)]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
 
 def as_rows(metrics: Mapping[str, Any]) -> list[tuple[str, str, str]]:

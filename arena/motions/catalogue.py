@@ -1,20 +1,13 @@
-"""Motions by their names."""
+"""Motions by their names, found by themselves."""
 
 from collections.abc import Callable
+from functools import cache
 
 from arena.motions.base import Motion
-from arena.motions.brownian import Brownian
-from arena.motions.chemotaxis import Chemotaxis
-from arena.motions.cyclic import Cyclic
-from arena.motions.replay import Replay
-from arena.motions.rotation import Rotation
-from arena.motions.track import Track
+from arena.registry import named_by_file, settings_with
 
-MOTIONS: dict[str, Callable[..., Motion]] = {
-    "brownian": Brownian,
-    "rotation": Rotation,
-    "cyclic": Cyclic,
-    "chemotaxis": Chemotaxis,
-    "track": Track,
-    "replay": Replay,
-}
+
+@cache
+def motions() -> dict[str, Callable[..., Motion]]:
+    """Find the settings that have `walk`, each by the name of its file: `Brownian` is `brownian`."""
+    return named_by_file("arena.motions", settings_with("walk"))

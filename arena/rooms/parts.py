@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import shapely
@@ -11,7 +11,7 @@ from jaxtyping import Float
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 from typing_extensions import TypeAliasType
 
-from arena.rooms.materials import MATERIALS
+from arena.rooms.materials import materials
 
 PILLAR_SIDES = 32
 """A pillar is a regular prism, the same one for the eye, the body and the odour."""
@@ -25,9 +25,13 @@ Point = TypeAliasType("Point", tuple[Coordinate, Coordinate])
 
 
 def _known(name: str) -> str:
-    if name not in MATERIALS:
-        raise ValueError(f"unknown material; choose one of {', '.join(sorted(MATERIALS))}")
+    if name not in materials():
+        raise ValueError(f"unknown material; choose one of {', '.join(materials())}")
     return name
+
+
+def _name_all(schema: dict[str, Any]) -> None:
+    schema["enum"] = list(materials())
 
 
 def _simple(corners: tuple[Point, ...]) -> tuple[Point, ...]:
@@ -43,9 +47,9 @@ def _simple(corners: tuple[Point, ...]) -> tuple[Point, ...]:
 Polygon = Annotated[tuple[Point, ...], Field(min_length=3), AfterValidator(_simple)]
 """Corners (m) in either order around."""
 Material = TypeAliasType(
-    "Material", Annotated[str, AfterValidator(_known), Field(json_schema_extra={"enum": sorted(MATERIALS)})]
+    "Material", Annotated[str, AfterValidator(_known), Field(json_schema_extra=_name_all)]
 )
-"""The name of a recipe in `arena.rooms.materials`."""
+"""The name of a recipe in `arena.rooms.recipes`."""
 
 
 def _number_of_names(material: object) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from arena import Recording
 from cogmap.atomic import check_absent
 from cogmap.commands.app import Json, Seed, app, tell, with_truth
+from cogmap.evaluation.populations import usual_charts
 from cogmap.evaluation.scoring import score
 from cogmap.export import export_nwb
 from cogmap.map.cognitive_map import CognitiveMap
@@ -35,7 +36,7 @@ def _learn(
     """
     walk = Recording.open(recording).without_truth()
     check_absent(out)
-    cmap = CognitiveMap(charts=min(3000, len(walk) // 3) if charts is None else charts, seed=seed)
+    cmap = CognitiveMap(charts=usual_charts(len(walk)) if charts is None else charts, seed=seed)
     cmap.fit(walk.views, walk.odours, progress=sys.stderr.isatty())
     cmap.save(out)
     tell(

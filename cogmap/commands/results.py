@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -10,10 +11,12 @@ from cyclopts import Parameter
 
 from arena import Arena
 from cogmap.commands.app import Json, Seed, app, tell
+from cogmap.errors import CogmapError
 from cogmap.experiments.demo import demo
-from cogmap.experiments.registry import experiment
+from cogmap.experiments.registry import listing, run_experiment
 from cogmap.pages.report import report
 from cogmap.sweeps import Plan, sweep
+from cogmap.tables import as_markdown
 
 
 @app.command(name="demo")
@@ -49,25 +52,34 @@ def _demo(
     tell(metrics, as_json=as_json)
 
 
-@app.command(name="experiment")
+def _help() -> str:
+    """Help of `cogmap experiment`: every experiment by what it is about, with what it does."""
+    families: dict[str, list[str]] = {}
+    for entry in listing():
+        families.setdefault(entry["about"], []).append(f"- {entry['experiment']}: {entry['what it does']}")
+    listed = "\n\n".join(f"{family}:\n\n" + "\n".join(lines) for family, lines in families.items())
+    return f"""Run an experiment: a table of metrics, figures, and the data behind them.
+
+{listed}
+
+Examples: `cogmap experiment rotation`; `cogmap experiment brownian --views 4000 --seed 1 --out walk`;
+`cogmap experiment fusion --arena pillar`; `cogmap experiment --list`.
+"""
+
+
+@app.command(name="experiment", help=_help())
 def _experiment(
-    name: str,
+    name: str | None = None,
     /,
     *,
     arena: str | None = None,
     views: int | None = None,
     seed: Seed = 0,
     out: Path | None = None,
+    show: Annotated[bool, Parameter(name="--list", negative="")] = False,
     as_json: Json = False,
 ) -> None:
-    """Run an experiment of the paper: a table of metrics, figures, and the data behind them.
-
-    On the manifold of views: rotation, cyclic, brownian, similarity, localisation, roadmap and
-    distinguishability. On the cells: fusion, slow_features, odour_ablation, acuity, darkness,
-    cue_rotation, goals, directionality and development. On the holes of all that a map knows: homology.
-
-    Examples: `cogmap experiment rotation`; `cogmap experiment brownian --views 4000 --seed 1 --out walk`;
-    `cogmap experiment fusion --arena pillar`; `cogmap experiment localisation --arena obstacles --json`.
+    """Run an experiment.
 
     Parameters
     ----------
@@ -79,8 +91,16 @@ def _experiment(
         To learn from; as many as in the paper by default.
     out
         Folder for metrics, figures and data; the name of the experiment by default.
+    show
+        Print a table of all experiments instead: what each does, where, on how many views, what may differ.
     """
-    result = experiment(
+    if show:
+        rows = listing()
+        sys.stdout.write((json.dumps(rows, indent=2) if as_json else as_markdown(rows)) + "\n")
+        return
+    if name is None:
+        raise CogmapError("no experiment is given; `cogmap experiment --list` tells which there are")
+    result = run_experiment(
         name,
         Path(name) if out is None else out,
         room=None if arena is None else Arena.load(arena),

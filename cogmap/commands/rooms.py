@@ -9,10 +9,12 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from arena import Arena, Camera, Disc, Nose, explore, gallery
-from arena.motions.catalogue import MOTIONS
+from arena.bodies.catalogue import bodies
+from arena.motions.catalogue import motions
 from cogmap.atomic import check_absent
 from cogmap.commands.app import Json, Seed, app, save_figure, tell
 from cogmap.errors import CogmapError
+from cogmap.inputs import check_choice
 from cogmap.plots import plot_room, plot_sheet
 
 
@@ -70,7 +72,7 @@ def _explore(
     /,
     *,
     out: Path,
-    motion: Literal["brownian", "rotation", "cyclic", "chemotaxis", "track", "replay"] = "brownian",
+    motion: Annotated[str, Parameter(help=f"How to move: {', '.join(motions())}.")] = "brownian",
     odorant: int | None = None,
     path: Path | None = None,
     fit: bool | None = None,
@@ -79,6 +81,7 @@ def _explore(
     width: int | None = None,
     height: int | None = None,
     nose_noise: float = 0.1,
+    body: Annotated[str, Parameter(help=f"What moves: {', '.join(bodies())}.")] = "disc",
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
@@ -94,8 +97,6 @@ def _explore(
         A room of the gallery or a TOML file.
     out
         Folder of the recording.
-    motion
-        How to move.
     odorant
         Which odour `chemotaxis` climbs, from 0.
     path
@@ -112,13 +113,16 @@ def _explore(
     nose_noise
         Standard deviation of the log of the smelt concentration.
     """
+    check_choice("motion", motion, tuple(motions()))
+    check_choice("body", body, tuple(bodies()))
     way = {"odorant": odorant, "path": path, "fit": fit}
     size = {"width": width, "height": height}
     recording = explore(
         Arena.load(arena),
-        MOTIONS[motion](**{name: value for name, value in way.items() if value is not None}),
+        motions()[motion](**{name: value for name, value in way.items() if value is not None}),
         getattr(Camera, camera)(**{name: value for name, value in size.items() if value is not None}),
         nose=Nose(noise=nose_noise),
+        body=bodies()[body](),
         views=views,
         seed=seed,
         out=out,

@@ -8,18 +8,8 @@ import numpy as np
 from jaxtyping import Float
 from sklearn.metrics import r2_score
 
-from cogmap.cells.decoding.decoders import (
-    fit_heading_frame,
-    fit_map_frame,
-    heading_errors,
-    place_map,
-    position_errors,
-)
-from cogmap.cells.measures.fields import place_coverage, place_fields
-from cogmap.cells.measures.heading import heading_statistics
-from cogmap.cells.measures.place import place_statistics
-from cogmap.cells.rates.bins import bin_edges
-from cogmap.cells.rates.maps import RateMaps, rate_maps
+from cogmap.cells.decoding.decoders import fit_heading_frame, fit_map_frame, heading_errors, place_map
+from cogmap.evaluation.ground_truth import CellMetrics, GroundTruth
 from cogmap.inputs import check_array
 
 
@@ -54,6 +44,7 @@ def score(
     *,
     train: tuple[Perceived, Float[np.ndarray, "train 3"]],
     reachable: Float[np.ndarray, "points 2"] | None = None,
+    cells: tuple[CellMetrics, CellMetrics] | None = None,
 ) -> dict[str, float]:
     """Every figure that activity gives, as one flat record.
 
@@ -69,6 +60,8 @@ def score(
     reachable
         Points in m, dense enough for every bin of 0.1 m that the body can reach to hold one or to lie between
         some that do; by default the positions of both recordings.
+    cells
+        Place cells and head-direction cells of this activity, where they have been measured already.
 
     Returns
     -------
@@ -88,46 +81,32 @@ def score(
     activity_train, poses_train = train
     check_array("poses", poses, (len(activity.place), 3))
     check_array("training poses", poses_train, (len(activity_train.odour), 3))
-    positions, headings = poses[:, :2], poses[:, 2]
-    walked = np.concatenate([positions, poses_train[:, :2]])
-    room = walked if reachable is None else reachable
-    edges = bin_edges(np.concatenate([walked, room]))
-    visited = edges.visited(walked)
-
-    away = position_errors(activity_train.odour, poses_train[:, :2], activity.odour, positions)
-    place_maps = rate_maps(activity.place, positions, edges=edges, visited=visited)
-    place = place_statistics(activity.place, positions, headings, maps=place_maps)
-    passing = place["passing"].to_numpy()
+    positions = poses[:, :2]
+    room = np.concatenate([positions, poses_train[:, :2]]) if reachable is None else reachable
+    truth = GroundTruth(poses_train, poses, room)
+    place, heading = cells or (CellMetrics(activity.place, truth), CellMetrics(activity.heading, truth))
     return {
-        "position_median_m": float(np.median(away)),
-        "position_p95_m": float(np.percentile(away, 95)),
-        "place_cells_passing": float(passing.mean()),
-        "place_coverage": place_coverage(place_fields(place_maps), passing, edges.visited(room)),
-        **_score_heading(activity, poses, (activity_train, poses_train), place_maps),
+        **truth.position(activity_train.odour, activity.odour),
+        "place_cells_passing": float(place.place["passing"].mean()),
+        "place_coverage": place.coverage(room),
+        **_score_heading(activity.phase, heading, activity_train.phase),
         **_score_metric_map(activity.position, positions, (activity_train.position, poses_train[:, :2])),
     }
 
 
 def _score_heading(
-    activity: Perceived,
-    poses: Float[np.ndarray, "views 3"],
-    train: tuple[Perceived, Float[np.ndarray, "train 3"]],
-    place_maps: RateMaps,
+    phase: Float[np.ndarray, "views"], cells: CellMetrics, train: Float[np.ndarray, "train"]
 ) -> dict[str, float]:
     """Errors and cells; without a compass no cell passes, and there is no heading to be wrong."""
-    if np.isnan(activity.phase).all():
+    if np.isnan(phase).all():
         return {"heading_cells_passing": 0.0}
-    positions, headings = poses[:, :2], poses[:, 2]
-    frame = fit_heading_frame(train[0].phase, train[1][:, 2])
-    turn = heading_errors(activity.phase, headings, frame)
+    turn = heading_errors(phase, cells.truth.poses[:, 2], fit_heading_frame(train, cells.truth.train[:, 2]))
     turn_deg = np.rad2deg(np.abs(turn))
-    maps = rate_maps(activity.heading, positions, edges=place_maps.edges, visited=place_maps.visited)
-    cells = heading_statistics(activity.heading, positions, headings, maps=maps)
     return {
         "heading_median_deg": float(np.median(turn_deg)),
         "heading_p95_deg": float(np.percentile(turn_deg, 95)),
         "heading_resultant": float(abs(np.mean(np.exp(1j * turn)))),
-        "heading_cells_passing": float(cells["passing"].mean()),
+        "heading_cells_passing": float(cells.heading["passing"].mean()),
     }
 
 

@@ -15,12 +15,8 @@ from jaxtyping import Float
 
 from arena import Arena, Camera, Disc, Motion, Nose, Recording, explore
 
-FRESH = 5000
-"""Views of a fresh walk, or as many as were learnt from when these are fewer."""
 FRESH_SEED = 1000
 """Added to the seed for a fresh walk, on which what was learnt is scored."""
-_BODY = Disc()
-_NOSE = Nose()
 
 
 @dataclass(frozen=True)
@@ -38,12 +34,14 @@ class Conditions:
     """Folder to keep views in while the experiment lasts; in memory when None."""
     library: Path | None = None
     """Folder to keep views in for all who take the same walk, in this process or another."""
-    nose: Nose = _NOSE
+    nose: Nose = field(default_factory=Nose)
     """To smell with."""
     motion: Motion | None = None
     """Way to move; the experiment's own when None."""
     camera: Camera | None = None
     """To look through; the experiment's own when None."""
+    body: Disc | None = None
+    """To move; the experiment's own when None."""
     map: Mapping[str, Any] = field(default_factory=dict)
     """Parameters of `CognitiveMap` that differ from the experiment's own."""
     extra_rooms: tuple[Arena, ...] = ()
@@ -54,18 +52,18 @@ class Conditions:
         motion: Motion,
         camera: Camera,
         *,
-        body: Disc = _BODY,
+        body: Disc | None = None,
         views: int | None = None,
         fresh: bool = False,
     ) -> Recording:
-        """Walk through the room, by `motion` and `camera` where the conditions have none of their own.
+        """Walk through the room, by `motion`, `camera` and `body` where the conditions have none of its own.
 
-        A fresh walk is another, of `FRESH` views, or of as many as are learnt from when these are fewer. The
+        A fresh walk is another, of 5,000 views, or of as many as are learnt from when these are fewer. The
         walk is the same whatever the camera. From a library, it is taken once: who else wants it waits.
         """
-        way, eye = self.motion or motion, self.camera or camera
+        way, eye, body = self.motion or motion, self.camera or camera, self.body or body or Disc()
         if views is None:
-            views = min(FRESH, self.views) if fresh else self.views
+            views = min(5000, self.views) if fresh else self.views
         seed = self.seed + FRESH_SEED * fresh
 
         def walk(out: Path | None) -> Recording:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import resource
 import sys
 import time
@@ -14,29 +13,19 @@ from typing import Any
 
 import numpy as np
 from jaxtyping import Float
+from matplotlib.figure import Figure
 
-from arena import Arena, Brownian, Camera, Disc, Recording, explore
-from cogmap.atomic import METRICS, result_folder
-from cogmap.cells import (
-    fit_heading_frame,
-    fit_map_frame,
-    heading_errors,
-    heading_statistics,
-    place_map,
-    place_statistics,
-    position_errors,
-    rate_maps,
-    tuning_curves,
-)
-from cogmap.cells.decoding.decoders import decode_positions
+from arena import Arena
+from cogmap.atomic import result_folder
+from cogmap.cells import decode_positions, fit_heading_frame, fit_map_frame, heading_errors, place_map
 from cogmap.errors import CogmapError
 from cogmap.evaluation.homology_of_map import homologies
-from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import FRESH, FRESH_SEED, poses_of
+from cogmap.evaluation.populations import usual_charts
+from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.provenance import write_provenance
+from cogmap.experiments.result import Result
+from cogmap.experiments.trial import Trial
 from cogmap.inputs import checked_count
-from cogmap.map.activity import Activity
-from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.plots import (
     plot_barcodes,
     plot_compass,
@@ -65,15 +54,6 @@ class Stopwatch:
         started = time.perf_counter()
         yield
         self.seconds[stage] = round(time.perf_counter() - started, 3)
-
-
-@dataclass(frozen=True)
-class Outing:
-    """A walk, where it really led, and what a map perceives on it."""
-
-    walk: Recording
-    poses: Float[np.ndarray, "views 3"]
-    activity: Activity
 
 
 def demo(
@@ -117,28 +97,26 @@ def demo(
         For a room or counts that cannot work, a folder that holds something else, or a map without a compass.
     """
     checked_count("views", views, 20)
-    charts = min(3000, views // 3) if charts is None else charts
+    charts = usual_charts(views) if charts is None else charts
     clock = Stopwatch()
+    drawings: dict[str, Figure] = {}
     with nullcontext() if out is None else result_folder(out) as folder:
+        conditions = Conditions(room, views, seed, progress, map={"charts": charts})
         with clock("explore"):
-            walks = [
-                explore(room, Brownian(), Camera.panoramic(), views=count, seed=number, progress=progress)
-                for count, number in ((views, seed), (min(views, FRESH), seed + FRESH_SEED))
-            ]
-        cmap = CognitiveMap(charts=charts, seed=seed)
+            trial = Trial.of(conditions)
         with clock("learn"):
-            cmap.fit(walks[0].views, walks[0].odours, progress=progress)
+            cmap = trial.cmap
         if not np.isfinite(cmap.phase_eigenvalue_):
             raise CogmapError(f"the map has no compass: {cmap.reason_}")
         with clock("perceive"):
-            learnt, fresh = (Outing(walk, poses_of(walk), cmap.perceive(walk.views)) for walk in walks)
+            learnt, _ = trial.train, trial.test
         with clock("score"):
-            figures = _score(room, learnt, fresh)
+            figures = trial.score | _nose_figures(trial)
         with clock("homology"):
-            bars = homologies(cmap.encode(learnt.walk.views), learnt.activity, landmarks=landmarks, seed=seed)
+            bars = homologies(cmap.encode(trial.walk.views), learnt, landmarks=landmarks, seed=seed)
         if folder is not None:
             with clock("figures"):
-                _draw(folder, room, learnt, fresh, bars)
+                drawings = _draw(trial, bars)
                 cmap.save(folder / "map")
         metrics = {
             "arena": room.name,
@@ -157,54 +135,62 @@ def demo(
             "peak_memory_bytes": _peak_memory(),
         }
         if folder is not None:
-            (folder / METRICS).write_text(json.dumps(metrics, indent=2) + "\n", encoding="utf-8")
+            captions = {name: _captions()[name] for name in drawings}
+            Result(metrics, figures=drawings, captions=captions).write(folder)
             overrides = {} if landmarks == LANDMARKS else {"landmarks": landmarks}
             write_provenance(folder, ("demo",), room, views=views, charts=charts, seed=seed, **overrides)
         return metrics
 
 
-def _score(room: Arena, learnt: Outing, fresh: Outing) -> dict[str, float]:
-    """Every figure of `score`, and the position error of the raw nose read by the same decoder."""
-    reachable = room.sample_free(20_000, Disc().radius, np.random.default_rng(0))
-    raw = position_errors(
-        np.log(learnt.walk.odours), learnt.poses[:, :2], np.log(fresh.walk.odours), fresh.poses[:, :2]
-    )
+def _smelt_positions(trial: Trial) -> Float[np.ndarray, "views 2"]:
+    """Positions (m) that the decoder of `score` reads from the raw nose."""
+    walk, fresh = (np.log(item.odours) for item in (trial.walk, trial.fresh))
+    return decode_positions(walk, trial.truth.train[:, :2], fresh)
+
+
+def _nose_figures(trial: Trial) -> dict[str, float]:
+    away = np.linalg.norm(_smelt_positions(trial) - trial.truth.poses[:, :2], axis=1)
     return {
-        **score(fresh.activity, fresh.poses, train=(learnt.activity, learnt.poses), reachable=reachable),
-        "nose_position_median_m": float(np.median(raw)),
-        "nose_position_p95_m": float(np.percentile(raw, 95)),
+        "nose_position_median_m": float(np.median(away)),
+        "nose_position_p95_m": float(np.percentile(away, 95)),
     }
 
 
-def _draw(folder: Path, room: Arena, learnt: Outing, fresh: Outing, bars: dict[str, Betti]) -> None:
-    """Write the figures."""
-    positions, headings = fresh.poses[:, :2], fresh.poses[:, 2]
-    rates = fresh.activity
-    frame = fit_heading_frame(learnt.activity.phase, learnt.poses[:, 2])
-    aligned = headings + heading_errors(rates.phase, headings, frame)
-    sheet = np.linspace(0, len(learnt.walk) - 1, 18).astype(int)
-    known = learnt.poses[:, :2]
-    smelt = decode_positions(np.log(learnt.walk.odours), known, np.log(fresh.walk.odours))
+def _draw(trial: Trial, bars: dict[str, Betti]) -> dict[str, Figure]:
+    """Draw what the score is of, the very maps and statistics that it has measured."""
+    train, poses = trial.truth.train, trial.truth.poses
+    positions, headings = poses[:, :2], poses[:, 2]
+    learnt, fresh = trial.train, trial.test
+    frame = fit_heading_frame(learnt.phase, train[:, 2])
+    aligned = headings + heading_errors(fresh.phase, headings, frame)
+    sheet = np.linspace(0, len(train) - 1, 18).astype(int)
+    decoded = decode_positions(learnt.odour, train[:, :2], fresh.odour)
     drawings = {
-        "room": plot_room(room, learnt.poses),
-        "views": plot_views(np.asarray(learnt.walk[sheet].views), learnt.poses[sheet]),
-        "place_cells": plot_rate_maps(
-            rate_maps(rates.place, positions), place_statistics(rates.place, positions, headings)
-        ),
-        "heading_cells": plot_tuning_curves(
-            tuning_curves(rates.heading, headings), heading_statistics(rates.heading, positions, headings)
-        ),
+        "room": plot_room(trial.conditions.room, train),
+        "views": plot_views(np.asarray(trial.walk[sheet].views), train[sheet]),
+        "place_cells": plot_rate_maps(trial.place.maps, trial.place.place),
+        "heading_cells": plot_tuning_curves(trial.heading.tuning.curves, trial.heading.heading),
         "compass": plot_compass(aligned, headings, positions),
-        "position": plot_position(
-            decode_positions(learnt.activity.odour, known, rates.odour), positions, smelt
-        ),
+        "position": plot_position(decoded, positions, _smelt_positions(trial)),
         "barcodes": plot_barcodes(bars),
     }
-    if not np.isnan(rates.position).all():
-        laid = place_map(rates.position, fit_map_frame(learnt.activity.position, known))
+    if not np.isnan(fresh.position).all():
+        laid = place_map(fresh.position, fit_map_frame(learnt.position, train[:, :2]))
         drawings["metric_map"] = plot_metric_map(laid, positions)
-    for name, figure in drawings.items():
-        figure.savefig(folder / f"{name}.png")
+    return drawings
+
+
+def _captions() -> dict[str, str]:
+    return {
+        "room": "The room from above, with the way through it",
+        "views": "Some of the views, with where they were taken",
+        "place_cells": "Rate maps of place cells, rate against position",
+        "heading_cells": "Tuning curves of head-direction cells, rate against heading",
+        "compass": "Learnt against true heading, the same colour for the same direction",
+        "position": "Recalled against true position",
+        "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
+        "metric_map": "Where the map believes it is, laid over where it truly is",
+    }
 
 
 def _peak_memory() -> int:

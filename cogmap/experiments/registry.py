@@ -2,36 +2,24 @@
 
 from __future__ import annotations
 
+import inspect
+import sys
 from collections.abc import Callable
 from contextlib import nullcontext
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 from arena import Arena
+from arena.registry import modules_of
 from cogmap.atomic import result_folder
 from cogmap.errors import CogmapError
 from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.controls.acuity import acuity
-from cogmap.experiments.controls.cue_rotation import cue_rotation
-from cogmap.experiments.controls.darkness import darkness
-from cogmap.experiments.controls.development_and_lesions import development_and_lesions
-from cogmap.experiments.controls.directionality import directionality
-from cogmap.experiments.controls.fusion import fusion
-from cogmap.experiments.controls.homology import homology
-from cogmap.experiments.controls.odour_ablation import odour_ablation
-from cogmap.experiments.controls.slow_feature_comparison import slow_feature_comparison
-from cogmap.experiments.paper.brownian import brownian
-from cogmap.experiments.paper.cyclic import cyclic
-from cogmap.experiments.paper.distinguishability import distinguishability
-from cogmap.experiments.paper.goals import goals
-from cogmap.experiments.paper.localisation import localisation
-from cogmap.experiments.paper.roadmap import roadmap
-from cogmap.experiments.paper.rotation import rotation
-from cogmap.experiments.paper.similarity import similarity
 from cogmap.experiments.provenance import write_provenance
 from cogmap.experiments.result import Result
-from cogmap.inputs import checked_count
+from cogmap.inputs import check_choice, checked_count
 
 FEWEST = 200
 """Views that every experiment can do with, if not well."""
@@ -46,41 +34,80 @@ class Experiment(NamedTuple):
     any_room: bool = True
     """Whether it can be done in other rooms."""
     takes: tuple[str, ...] = ()
-    """Which of `nose`, `motion`, `camera` and `map` may differ from its own."""
+    """Which of `nose`, `motion`, `camera`, `body` and `map` may differ from its own."""
     extra_rooms: tuple[str, ...] = ()
     """Rooms that it visits as well, unless told where to take place."""
 
+    @property
+    def summary(self) -> str:
+        """What it does: the first line of its docstring."""
+        return (inspect.getdoc(self.run) or "").partition("\n")[0]
 
-EXPERIMENTS = {
-    "rotation": Experiment(rotation, "furnished", 5_000),
-    "cyclic": Experiment(cyclic, "furnished", 4_000),
-    "brownian": Experiment(brownian, "furnished", 17_000),
-    "similarity": Experiment(similarity, "furnished", 5_000),
-    "localisation": Experiment(localisation, "furnished", 17_000),
-    "roadmap": Experiment(roadmap, "obstacles", 17_000),
-    "distinguishability": Experiment(distinguishability, "white_rectangle", 17_000, any_room=False),
-    "fusion": Experiment(fusion, "furnished", 17_000, takes=("nose", "motion", "camera", "map")),
-    "slow_features": Experiment(
-        slow_feature_comparison, "furnished", 17_000, takes=("nose", "camera", "map")
-    ),
-    "odour_ablation": Experiment(odour_ablation, "furnished", 17_000, takes=("motion", "camera", "map")),
-    "acuity": Experiment(acuity, "furnished", 17_000, takes=("nose", "motion", "map")),
-    "darkness": Experiment(darkness, "furnished", 17_000, takes=("nose", "motion", "camera", "map")),
-    "cue_rotation": Experiment(cue_rotation, "open_field", 17_000, takes=("nose", "motion", "camera", "map")),
-    "goals": Experiment(goals, "furnished", 17_000, takes=("camera",)),
-    "directionality": Experiment(directionality, "furnished", 17_000, takes=("nose", "camera", "map")),
-    "development": Experiment(development_and_lesions, "furnished", 17_000, takes=("nose", "camera", "map")),
-    "homology": Experiment(
-        homology,
-        "open_field",
-        17_000,
-        takes=("nose", "camera", "map"),
-        extra_rooms=("furnished", "pillar", "two_pillars", "l_shape"),
-    ),
-}
+    @property
+    def family(self) -> str:
+        """What experiments like it are about: the first line of the docstring of their package."""
+        package = self.run.__module__.rpartition(".")[0] or self.run.__module__
+        words = getattr(sys.modules.get(package), "__doc__", None) or package
+        return words.partition("\n")[0].removesuffix(", one file each.")
+
+
+_registered: dict[str, Experiment] = {}
 
 
 def experiment(
+    *,
+    room: str,
+    views: int,
+    any_room: bool = True,
+    takes: tuple[str, ...] = (),
+    extra_rooms: tuple[str, ...] = (),
+) -> Callable[[Callable[[Conditions], Result]], Callable[[Conditions], Result]]:
+    """Register a function as the experiment of its name; the parameters are those of `Experiment`.
+
+    Raises
+    ------
+    CogmapError
+        When another module has an experiment of this name.
+    """
+
+    def register(run: Callable[[Conditions], Result]) -> Callable[[Conditions], Result]:
+        known = _registered.get(run.__name__)
+        if known is not None and known.run.__module__ != run.__module__:
+            raise CogmapError(
+                f"there is an experiment {run.__name__!r} in {known.run.__module__} already; "
+                f"rename that of {run.__module__}"
+            )
+        _registered[run.__name__] = Experiment(run, room, views, any_room, takes, extra_rooms)
+        return run
+
+    return register
+
+
+@cache
+def experiments() -> dict[str, Experiment]:
+    """Find all experiments: those of the packages here and of the plugins of `cogmap.experiments`."""
+    # The decorator registers each when its file is imported.
+    for _ in modules_of("cogmap.experiments"):
+        pass
+    return _registered
+
+
+def listing() -> list[dict[str, str]]:
+    """Tell what each experiment is called, does, takes and where it takes place, those of a kind together."""
+    return [
+        {
+            "experiment": name,
+            "what it does": chosen.summary,
+            "about": chosen.family,
+            "room": ", ".join((chosen.room, *chosen.extra_rooms)),
+            "views": f"{chosen.views:,}",
+            "takes": ", ".join((*(["arena"] if chosen.any_room else []), *chosen.takes)),
+        }
+        for name, chosen in sorted(experiments().items(), key=lambda item: (item[1].family, item[0]))
+    ]
+
+
+def run_experiment(
     name: str,
     out: Path | None = None,
     *,
@@ -96,7 +123,7 @@ def experiment(
     Parameters
     ----------
     name
-        One of `EXPERIMENTS`.
+        One of `experiments()`.
     out
         Folder for `metrics.json`, figures and the data behind them; an earlier result there is replaced at
         the end. None writes nothing.
@@ -111,7 +138,7 @@ def experiment(
     library
         Folder, which must exist, in which walks are looked for and left for other runs; None leaves none.
     overrides
-        `nose`, `motion`, `camera`, or parameters of `CognitiveMap` as `map`, where the experiment takes them.
+        `nose`, `motion`, `camera`, `body`, or parameters of `CognitiveMap` as `map`, where it takes them.
 
     Raises
     ------
@@ -119,9 +146,8 @@ def experiment(
         For an unknown name, a room or counts that cannot work, something that the experiment does not take, a
         folder that holds something else.
     """
-    if name not in EXPERIMENTS:
-        raise CogmapError(f"there is no experiment {name!r}; choose one of {', '.join(EXPERIMENTS)}")
-    chosen = EXPERIMENTS[name]
+    check_choice("experiment", name, tuple(experiments()))
+    chosen = experiments()[name]
     if room is not None and not chosen.any_room:
         raise CogmapError(f"{name} takes place in rooms of its own, not in {room.name!r}; leave the room out")
     for what in overrides:
@@ -153,7 +179,7 @@ def experiment(
             "views": views,
             "seed": seed,
         }
-        result = Result({**about, **found.metrics}, found.tables, found.figures)
+        result = replace(found, metrics={**about, **found.metrics})
         if folder is not None:
             result.write(folder)
             where = room if chosen.any_room else None

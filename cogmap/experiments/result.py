@@ -13,6 +13,8 @@ from matplotlib.figure import Figure
 from cogmap.atomic import METRICS
 from cogmap.tables import write_table
 
+CAPTIONS = "captions.json"
+
 
 @dataclass(frozen=True)
 class Result:
@@ -23,12 +25,15 @@ class Result:
     tables: dict[str, pd.DataFrame] = field(default_factory=dict)
     """One row per view, pair or place; names of columns end in their unit."""
     figures: dict[str, Figure] = field(default_factory=dict)
+    captions: dict[str, str] = field(default_factory=dict)
+    """What each figure shows, for those who read it and for those who cannot see it."""
 
     def write(self, folder: Path) -> None:
-        """Write `metrics.json`, tables as Parquet and CSV, and figures as PNG into a folder that exists."""
+        """Write metrics and captions as JSON, tables as Parquet and CSV, figures as PNG into a folder."""
         for name, table in self.tables.items():
             for ending in ("parquet", "csv"):
                 write_table(table, folder / f"{name}.{ending}")
         for name, figure in self.figures.items():
             figure.savefig(folder / f"{name}.png")
-        (folder / METRICS).write_text(json.dumps(self.metrics, indent=2) + "\n", encoding="utf-8")
+        for name, record in ((CAPTIONS, self.captions), (METRICS, self.metrics)):
+            (folder / name).write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")

@@ -9,18 +9,18 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
-from arena import Arena, Camera, Motion, Nose
-from arena.motions.catalogue import MOTIONS
+from arena import Arena, Camera, Nose
+from arena.bodies.catalogue import bodies
+from arena.motions.catalogue import motions
 from cogmap.errors import CogmapError
-from cogmap.experiments.registry import EXPERIMENTS, FEWEST, Experiment
+from cogmap.experiments.registry import FEWEST, Experiment, experiments
 from cogmap.inputs import check_choice, checked_count
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.sweeps.plan import Plan, Shown
 
-CAMERAS: dict[str, Callable[[], Camera]] = {"panoramic": Camera.panoramic, "perspective": Camera.perspective}
-_OF_MAP = [name for name in inspect.signature(CognitiveMap).parameters if name != "seed"]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Point:
     any_room: bool
     """Whether the experiment is told the room; else it takes its own, or all of its own."""
     overrides: dict[str, Any]
-    """`nose`, `motion`, `camera` and `map`, where they are given."""
+    """`nose`, `motion`, `camera`, `body` and `map`, where they are given."""
 
     @cached_property
     def described(self) -> dict[str, Any]:
@@ -69,12 +69,12 @@ def points_of(plan: Plan) -> list[Point]:
         For an unknown experiment or parameter, something the experiment does not take, values that cannot be,
         or two points that are the same.
     """
-    check_choice("experiment", plan.experiment, tuple(EXPERIMENTS))
+    check_choice("experiment", plan.experiment, tuple(experiments()))
     common = dict(plan.fixed) if plan.views is None else {**plan.fixed, "views": plan.views}
     found: dict[str, Point] = {}
     for index, assignment in enumerate(plan.assignments()):
         given = {**common, **{name: choice.value for name, choice in assignment.items()}}
-        where = _settle(plan.experiment, EXPERIMENTS[plan.experiment], given)
+        where = _settle(plan.experiment, experiments()[plan.experiment], given)
         shown = {name: choice.shown for name, choice in assignment.items()}
         for seed in plan.seeds:
             point = Point(experiment=plan.experiment, varied=shown, seed=seed, **where)
@@ -88,22 +88,23 @@ def points_of(plan: Plan) -> list[Point]:
 def _settle(name: str, chosen: Experiment, given: Mapping[str, Any]) -> dict[str, Any]:
     """Turn parameters into the arguments of a point that it does not share with the rest of its sweep."""
     families = {part.split(".")[0] for part in given}
-    unknown = families - {"views", "arena", "motion", "camera", "nose", "map"}
+    build: dict[str, Callable[[Mapping[str, Any]], Any]] = {
+        "motion": lambda given: _chosen(given, "motion", motions(), "brownian"),
+        "camera": _camera,
+        "body": lambda given: _chosen(given, "body", bodies(), "disc"),
+        "nose": lambda given: Nose(**_fields(given, "nose", Nose.model_fields)),
+        "map": _map,
+    }
+    unknown = families - {"views", "arena", *build}
     if unknown:
-        known = ["views", "arena", "motion", "camera", "nose.noise", "map.charts"]
+        known = ["views", "arena", "motion", "camera", "body", "nose.noise", "map.charts"]
         raise _unknown(next(part for part in given if part.split(".")[0] in unknown), known)
     if "arena" in families and not chosen.any_room:
         raise CogmapError(f"{name} takes place in rooms of its own; leave {_first(given, 'arena')} out")
-    for family in ("motion", "camera", "nose", "map"):
+    for family in build:
         if family in families and family not in chosen.takes:
             takes = ", ".join(("views", *(["arena"] if chosen.any_room else []), *chosen.takes))
             raise CogmapError(f"{name} does not take {_first(given, family)}; it takes {takes}")
-    build: dict[str, Callable[[Mapping[str, Any]], Any]] = {
-        "motion": _motion,
-        "camera": _camera,
-        "nose": _nose,
-        "map": _map,
-    }
     return {
         "views": checked_count("views", given.get("views", chosen.views), FEWEST),
         "room": _room(given, chosen),
@@ -121,30 +122,25 @@ def _room(given: Mapping[str, Any], chosen: Experiment) -> Arena:
     return room.model_copy(update=changes) if changes else room
 
 
-def _motion(given: Mapping[str, Any]) -> Motion:
-    kind = MOTIONS[_kind(given, "motion", tuple(MOTIONS))]
-    return kind(**_fields(given, "motion", inspect.signature(kind).parameters))
+def _chosen(given: Mapping[str, Any], family: str, kinds: Mapping[str, Callable[..., T]], usual: str) -> T:
+    """Make what a registry has under the name that is given."""
+    kind = str(given.get(family, usual))
+    check_choice(family, kind, tuple(kinds))
+    return kinds[kind](**_fields(given, family, inspect.signature(kinds[kind]).parameters))
 
 
 def _camera(given: Mapping[str, Any]) -> Camera:
-    usual = CAMERAS[_kind(given, "camera", tuple(CAMERAS))]().model_dump()
-    known = [name for name in Camera.model_fields if name != "projection"]
-    return Camera(**{**usual, **_fields(given, "camera", known)})
-
-
-def _nose(given: Mapping[str, Any]) -> Nose:
-    return Nose(**_fields(given, "nose", Nose.model_fields))
+    kind = str(given.get("camera", "panoramic"))
+    check_choice("camera", kind, ("panoramic", "perspective"))
+    usual = (Camera.panoramic if kind == "panoramic" else Camera.perspective)().model_dump()
+    return Camera(
+        **usual | _fields(given, "camera", [name for name in Camera.model_fields if name != "projection"])
+    )
 
 
 def _map(given: Mapping[str, Any]) -> dict[str, int]:
-    fields = _fields(given, "map", _OF_MAP)
-    return {name: checked_count(f"map.{name}", value) for name, value in fields.items()}
-
-
-def _kind(given: Mapping[str, Any], family: str, kinds: tuple[str, ...]) -> str:
-    kind = str(given.get(family, kinds[0]))
-    check_choice(family, kind, kinds)
-    return kind
+    known = [name for name in inspect.signature(CognitiveMap).parameters if name != "seed"]
+    return {name: checked_count(f"map.{name}", value) for name, value in _fields(given, "map", known).items()}
 
 
 def _fields(given: Mapping[str, Any], family: str, known: Collection[str]) -> dict[str, Any]:
@@ -152,7 +148,7 @@ def _fields(given: Mapping[str, Any], family: str, known: Collection[str]) -> di
     found = {}
     for name, value in given.items():
         start, _, key = name.partition(".")
-        if start != family or name in ("arena", "motion", "camera"):
+        if start != family or name in ("arena", "motion", "camera", "body"):
             continue
         if key not in known:
             raise _unknown(name, [f"{family}.{item}" for item in known])

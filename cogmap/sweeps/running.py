@@ -16,7 +16,7 @@ from joblib import Parallel, delayed
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from cogmap.errors import CogmapError
-from cogmap.experiments.registry import EXPERIMENTS, Experiment, experiment
+from cogmap.experiments.registry import Experiment, experiments, run_experiment
 from cogmap.portable import arithmetic
 from cogmap.sweeps.ledger import KEPT, MARK, Ledger, disk_errors, is_full_disk
 from cogmap.sweeps.points import Point
@@ -64,11 +64,11 @@ def do(task: Task) -> None:
 
 def _outcome(task: Task) -> dict[str, Any]:
     point = task.point
-    EXPERIMENTS.setdefault(point.experiment, task.chosen)
+    experiments().setdefault(point.experiment, task.chosen)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the table says which maps are not trusted
-            found = experiment(
+            found = run_experiment(
                 point.experiment,
                 room=point.room if point.any_room else None,
                 views=point.views,

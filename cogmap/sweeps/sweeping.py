@@ -11,7 +11,7 @@ from tqdm import tqdm
 
 from cogmap.errors import CogmapError, UnlikeArithmeticWarning
 from cogmap.experiments.provenance import write_provenance
-from cogmap.experiments.registry import EXPERIMENTS
+from cogmap.experiments.registry import experiments
 from cogmap.inputs import checked_count
 from cogmap.plots.sweep import plot_trend, statistics_of
 from cogmap.sweeps.ledger import Ledger, Record, disk_errors
@@ -78,7 +78,7 @@ def sweep(
     points = points_of(plan)
     ledger = Ledger(Path(out).resolve())
     with ledger.opened(plan, points, keep_walks=keep_walks):
-        tasks = [Task(ledger, point, EXPERIMENTS[point.experiment], retry_failed) for point in points]
+        tasks = [Task(ledger, point, experiments()[point.experiment], retry_failed) for point in points]
         left = [task for task in tasks if _is_left(ledger.read(task.point), again=retry_failed)]
         done = len(tasks) - len(left)
         with tqdm(total=len(tasks), initial=done, unit="point", disable=not progress) as bar:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from arena.rooms.materials import MATERIALS
+from arena.rooms.materials import materials
 
 VALUES: list[Any] = [
     *(0, -1, 3, 10**19, 2**63 - 1, True, False, 0.0, -0.0, 1e-300, 1e-9, 1e-4, 0.01, 0.3, 2.0, 40.0, 300.0),
@@ -24,7 +24,7 @@ VALUES: list[Any] = [
     *({}, {"position": [0.0, 0.0]}, {"azimuth_deg": 1.0, "elevation_deg": 1.0}, date(2026, 11, 1)),
 ]
 WORDS = [
-    *MATERIALS,
+    *materials(),
     *'[]{}=,."#\n-',
     "[[boxes]]",
     "[light]",
@@ -117,6 +117,6 @@ def _shake(part: Any, key: Any, rng: np.random.Generator) -> None:
         case 1:
             part[str(rng.choice(["floor", "zenith", "light", "height", "material", "x"]))] = part[key]
         case 2 if isinstance(part[key], str):
-            part[key] = str(rng.choice(sorted(MATERIALS)))
+            part[key] = str(rng.choice(list(materials())))
         case _:
             part[key] = VALUES[rng.integers(len(VALUES))]

@@ -7,9 +7,9 @@ import shapely
 from hypothesis import strategies as st
 
 from arena.rooms.arena import Arena
-from arena.rooms.materials import MATERIALS
+from arena.rooms.materials import materials
 
-NAMES = sorted(MATERIALS)
+NAMES = list(materials())
 BESIDE = 0.08
 """A source at least this far (m) from all else has an odour cell in its sight."""
 Fields = dict[str, Any]

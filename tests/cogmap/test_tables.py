@@ -3,7 +3,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from cogmap.tables import as_table, write_table
+from cogmap.tables import as_markdown, as_table, write_table
 
 
 @pytest.mark.parametrize(("ending", "read"), [("parquet", pd.read_parquet), ("csv", pd.read_csv)])
@@ -23,3 +23,10 @@ def test_every_figure_has_a_line_with_its_unit() -> None:
     assert ["seconds.learn", "3", "s"] in lines
     assert ["betti_place", "[1,", "0,", "0]"] in lines
     assert "reason" not in table
+
+
+def test_markdown_has_a_row_for_each_record() -> None:
+    rows = [{"name": "one", "size": "1"}, {"name": "two", "size": "2"}]
+    assert as_markdown(rows).splitlines() == [
+        "| name | size |", "| --- | --- |", "| one | 1 |", "| two | 2 |"
+    ]  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 
 from cogmap.cells.measures.information import spatial_information
 from cogmap.cells.measures.rayleigh import rayleigh_test
@@ -81,7 +81,7 @@ def heading_statistics(
             "tuning_width_deg": np.rad2deg(tuning_widths(curves)),
             "rayleigh_p": rayleigh_test(rates * seconds, headings).p_value,
             "stability": curve_stability(rates, headings),
-            "drift_deg": np.rad2deg(_drift(rates, positions, headings)),
+            "drift_deg": np.rad2deg(_drift(rates, positions, headings, vector)),
             "spatial_information": spatial_information(maps),
         },
         index=pd.RangeIndex(rates.shape[1], name="cell"),
@@ -98,13 +98,13 @@ def _drift(
     rates: Float[np.ndarray, "views cells"],
     positions: Float[np.ndarray, "views 2"],
     headings: Float[np.ndarray, "views"],
+    vector: Complex[np.ndarray, "cells"],
 ) -> Float[np.ndarray, "cells"]:
     """Median over blocks of the room of |preferred direction there − everywhere|, rad."""
     low, high = positions.min(axis=0), positions.max(axis=0)
     block = BinEdges(*np.linspace(low, high, BLOCKS + 1).T).bin_of(positions)
-    away = mean_vectors(tuning_curves(rates, headings)).conj()
     turns = [
-        np.abs(np.angle(mean_vectors(tuning_curves(rates[here], headings[here], BLOCK_BINS)) * away))
+        np.abs(np.angle(mean_vectors(tuning_curves(rates[here], headings[here], BLOCK_BINS)) * vector.conj()))
         for here in (block == index for index in range(BLOCKS**2))
         if here.sum() >= BLOCK_VIEWS
     ]

@@ -28,6 +28,7 @@ def place_statistics(
     headings: Float[np.ndarray, "views"],
     *,
     maps: RateMaps | None = None,
+    fields: PlaceFields | None = None,
 ) -> pd.DataFrame:
     """Measure every cell as a place cell: one row per cell, one column per statistic.
 
@@ -43,6 +44,8 @@ def place_statistics(
         In rad, (views,).
     maps
         The rate maps of these cells; by default `rate_maps(rates, positions)`.
+    fields
+        The fields in these maps; by default `place_fields(maps)`.
 
     Returns
     -------
@@ -60,7 +63,7 @@ def place_statistics(
     """
     check_samples(rates, positions=positions, headings=headings)
     maps = rate_maps(rates, positions) if maps is None else maps.of_cells(rates.shape[1])
-    fields = place_fields(maps)
+    fields = place_fields(maps) if fields is None else fields
     edges = maps.edges
     unsmoothed = rate_maps(rates, positions, edges.side, 0.0, edges=edges, visited=maps.visited)
     table = pd.DataFrame(

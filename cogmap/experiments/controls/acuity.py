@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from arena import Brownian, Camera, Recording
-from cogmap.evaluation.populations import MOST_CHARTS, GroundTruth, grow_map, perceive, trust_report
-from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Conditions, poses_of
+from arena import Camera, Recording
+from cogmap.evaluation.populations import trust_report, usual_charts
+from cogmap.experiments.conditions import Conditions
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
+from cogmap.experiments.trial import Trial
 from cogmap.plots import plot_cases
 
 COLUMNS = (12, 24, 36, 60, 90, 360)
@@ -25,6 +26,7 @@ RECEPTORS = 90
 LABELS = {"columns": "columns of the eye", "charts": "charts"}
 
 
+@experiment(room="furnished", views=17_000, takes=("nose", "motion", "body", "map"))
 def acuity(conditions: Conditions) -> Result:
     """Learn the same walk through coarser and coarser eyes, and with fewer and more charts.
 
@@ -33,17 +35,14 @@ def acuity(conditions: Conditions) -> Result:
     usual number of charts is 3,000, or a third of the views when these are fewer than 9,000. Without a
     compass there is no error of heading.
     """
-    usual = min(MOST_CHARTS, conditions.views // 3)
+    usual = usual_charts(conditions.views)
     cases = [(columns, usual) for columns in COLUMNS]
     cases += [(USUAL_COLUMNS, round(part * usual)) for part in CHARTS if part != 1]
     metrics: dict[str, Any] = {}
     for columns in dict.fromkeys(columns for columns, _ in cases):
-        walk, fresh = (
-            explore_at_acuity(conditions, columns),
-            explore_at_acuity(conditions, columns, fresh=True),
-        )
+        trial = explore_at_acuity(conditions, columns)
         for charts in (count for width, count in cases if width == columns):
-            metrics[f"{columns}_columns_{charts}_charts"] = _learn(conditions, walk, fresh, charts)
+            metrics[f"{columns}_columns_{charts}_charts"] = _learn(trial, charts)
     rows = [{"columns": columns, "charts": charts} for columns, charts in cases]
     table = pd.DataFrame(
         [{**row, **metrics["{columns}_columns_{charts}_charts".format(**row)]} for row in rows]
@@ -52,25 +51,26 @@ def acuity(conditions: Conditions) -> Result:
         metrics=metrics,
         tables={"cases": table},
         figures={"acuity": plot_cases(table, LABELS, doubling=True)},
+        captions={
+            "acuity": "Errors and cells with ever more columns of the eye, and with ever more charts",
+        },
     )
 
 
-def explore_at_acuity(conditions: Conditions, columns: int, *, fresh: bool = False) -> Recording:
+def explore_at_acuity(conditions: Conditions, columns: int) -> Trial:
     """Walk with an eye of so many columns, its pixels repeated until they are as many as receptors."""
-    eye = Camera.panoramic(columns, columns // 6)
-    walk = conditions.explore(Brownian(), eye, fresh=fresh)
-    times = -(-RECEPTORS // columns)
+    trial = Trial.of(conditions, camera=Camera.panoramic(columns, columns // 6))
+    walk, fresh = (_enlarged(item, -(-RECEPTORS // columns)) for item in (trial.walk, trial.fresh))
+    return replace(trial, walk=walk, fresh=fresh)
+
+
+def _enlarged(walk: Recording, times: int) -> Recording:
     if times == 1:
         return walk
     return replace(walk, views=np.asarray(walk.views).repeat(times, axis=1).repeat(times, axis=2))
 
 
-def _learn(conditions: Conditions, walk: Recording, fresh: Recording, charts: int) -> dict[str, Any]:
-    cmap = grow_map(walk, {**conditions.map, "charts": charts}, seed=conditions.seed)
-    truth = GroundTruth.of(conditions.room, poses_of(walk), poses_of(fresh))
-    train, test = (perceive(cmap, item.views) for item in (walk, fresh))
-    return {
-        **truth.measure(test.place).place_figures,
-        **score(test, truth.poses, train=(train, truth.train), reachable=truth.reachable),
-        **trust_report(cmap),
-    }
+def _learn(trial: Trial, charts: int) -> dict[str, Any]:
+    conditions = trial.conditions
+    trial = replace(trial, conditions=replace(conditions, map={**conditions.map, "charts": charts}))
+    return {**trial.place.place_figures, **trial.score, **trust_report(trial.cmap)}

@@ -11,8 +11,10 @@ from jaxtyping import Float
 from arena import Arena, Brownian, Camera, Recording
 from cogmap.cells import RateMaps, Tuning, bin_edges, mean_vectors, rate_maps, tuning_curves
 from cogmap.errors import CogmapError
-from cogmap.evaluation.populations import grow_map, map_correlations, perceive, trust_report
+from cogmap.evaluation.ground_truth import map_correlations
+from cogmap.evaluation.populations import grow_map, perceive, trust_report
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_examples
 
@@ -23,6 +25,7 @@ SOURCES = ((-1.2, -1.0), (1.2, 0.6), (0.9, -1.2))
 """m; no turn of the room brings them to the same places."""
 
 
+@experiment(room="open_field", views=17_000, takes=("nose", "motion", "camera", "body", "map"))
 def cue_rotation(conditions: Conditions) -> Result:
     """Learn a square room, then turn its walls by a quarter and walk again, in the light and in the dark.
 
@@ -82,6 +85,9 @@ def cue_rotation(conditions: Conditions) -> Result:
                     "heading cells, walls turned": heading[1],
                 }
             )
+        },
+        captions={
+            "examples": "Six cells of each population before and after the walls have turned",
         },
     )
 

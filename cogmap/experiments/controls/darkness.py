@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from arena import Brownian, Camera
-from cogmap.evaluation.populations import GroundTruth, as_one_table, grow_map, map_correlations, perceive
+from cogmap.evaluation.ground_truth import as_one_table, map_correlations
 from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.conditions import Conditions
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
+from cogmap.experiments.trial import Trial
 from cogmap.plots import plot_cell_types, plot_examples
 
 
+@experiment(room="furnished", views=17_000, takes=("nose", "motion", "camera", "body", "map"))
 def darkness(conditions: Conditions) -> Result:
     """Take one sense away from a map that has learnt with both.
 
@@ -19,30 +21,34 @@ def darkness(conditions: Conditions) -> Result:
     the dark its heading cells are silent. `map_correlation` is the median over place cells of the correlation
     of the rate map in the dark with that in the light: whether the same cell means the same place.
     """
-    camera = Camera.panoramic()
-    walk = conditions.explore(Brownian(), camera)
-    fresh = conditions.explore(Brownian(), camera, fresh=True)
-    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
-    truth = GroundTruth.of(conditions.room, poses_of(walk), poses_of(fresh))
-    train = perceive(cmap, walk.views), truth.train
-    light, dark = perceive(cmap, fresh.views), cmap.perceive(odours=fresh.odours)
-    smelt = cmap.perceive(odours=walk.odours), truth.train
-    rates = {
-        "sight, place": light.place,
-        "sight, heading": light.heading,
-        "smell, place": dark.place,
-        "smell, heading": dark.heading,
+    trial = Trial.of(conditions)
+    truth, cmap = trial.truth, trial.cmap
+    dark, smelt = (cmap.perceive(odours=item.odours) for item in (trial.fresh, trial.walk))
+    cells = {
+        "sight, place": trial.place,
+        "sight, heading": trial.heading,
+        "smell, place": truth.measure(dark.place),
+        "smell, heading": truth.measure(dark.heading),
     }
-    cells = {name: truth.measure(found) for name, found in rates.items()}
-    same = map_correlations(truth.maps(light.place), truth.maps(dark.place))
+    scores = {
+        "sight": trial.score,
+        "smell": score(
+            dark,
+            truth.poses,
+            train=(smelt, truth.train),
+            reachable=truth.reachable,
+            cells=(cells["smell, place"], cells["smell, heading"]),
+        ),
+    }
+    same = map_correlations(cells["sight, place"].maps, cells["smell, place"].maps)
     table = as_one_table(cells)
     metrics = {
         name: {
             **cells[f"{name}, place"].place_figures,
             **cells[f"{name}, heading"].heading_figures,
-            **score(seen, truth.poses, train=learnt, reachable=truth.reachable),
+            **figures,
         }
-        for name, seen, learnt in (("sight", light, train), ("smell", dark, smelt))
+        for name, figures in scores.items()
     }
     return Result(
         metrics={**metrics, "map_correlation": float(np.nanmedian(same))},
@@ -50,7 +56,11 @@ def darkness(conditions: Conditions) -> Result:
         figures={
             "cells": plot_cell_types(table),
             "examples": plot_examples(
-                {name: truth.tuning(found) for name, found in rates.items() if np.nan_to_num(found).any()}
+                {name: found.tuning for name, found in cells.items() if found.rates.any()}
             ),
+        },
+        captions={
+            "cells": "What each cell tells of position and of heading, by population",
+            "examples": "Six cells of each population: rate maps, and rate by heading",
         },
     )

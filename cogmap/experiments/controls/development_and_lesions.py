@@ -11,11 +11,13 @@ from jaxtyping import Float
 from sklearn.linear_model import Ridge
 from sklearn.metrics import pairwise_distances_argmin
 
-from arena import Brownian, Camera
 from cogmap.cells.measures.correlations import correlations
-from cogmap.evaluation.populations import GroundTruth, as_one_table, grow_map, perceive, trust_report
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.evaluation.ground_truth import CellMetrics, GroundTruth, as_one_table
+from cogmap.evaluation.populations import perceive, trust_report
+from cogmap.experiments.conditions import Conditions
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
+from cogmap.experiments.trial import Trial
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.lesions import afferent_weights, lesioned, weights_of, with_blank_afferents
 from cogmap.plots import plot_afferents, plot_courses
@@ -33,21 +35,36 @@ LEAST = 1.0
 """Weights below this (Hz) are left out of the table."""
 
 
-class Rates(NamedTuple):
-    """Of both populations, Hz."""
-
-    place: Float[np.ndarray, "views place_cells"]
-    heading: Float[np.ndarray, "views heading_cells"]
+POPULATIONS = ("place", "heading")
 
 
 class Seen(NamedTuple):
     """What a map makes of some training views and of fresh ones."""
 
-    train: Rates
-    test: Rates
+    train: tuple[Float[np.ndarray, "train place_cells"], Float[np.ndarray, "train heading_cells"]]
+    """Rates of both populations, Hz."""
+    place: CellMetrics
+    """Of the fresh views, as are those of heading."""
+    heading: CellMetrics
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """How many cells pass, and how well place and heading can be read from them."""
+        truth = self.place.truth
+        train, test = (np.nan_to_num(rates).astype(float) for rates in (self.train[1], self.heading.rates))
+        cosine, sine = Ridge(alpha=1.0).fit(train, _on_circle(truth.train[:, 2])).predict(test).T
+        turned = np.angle(np.exp(1j * (np.arctan2(sine, cosine) - truth.poses[:, 2])))
+        return {
+            "place_cells_passing": self.place.place_figures["place_cells_passing"],
+            "place_coverage": self.place.place_coverage,
+            "heading_cells_passing": self.heading.heading_figures["heading_cells_passing"],
+            **truth.position(self.train[0], self.place.rates),
+            "heading_median_deg": float(np.rad2deg(np.median(np.abs(turned)))),
+        }
 
 
-def development_and_lesions(conditions: Conditions) -> Result:
+@experiment(room="furnished", views=17_000, takes=("nose", "camera", "body", "map"))
+def development(conditions: Conditions) -> Result:
     """Look at the weights from which place cells and head-direction cells fire.
 
     `growth`: the afferents of a grown map are blanked, and learn from the same walk once more while smell and
@@ -60,43 +77,41 @@ def development_and_lesions(conditions: Conditions) -> Result:
     Positions are read from the rates of place cells by the decoder of `score`, headings from those of heading
     cells by linear regression of their cosine and sine; both know some 4,000 of the training views.
     """
-    camera = Camera.panoramic()
-    walk = conditions.explore(Brownian(), camera)
-    fresh = conditions.explore(Brownian(), camera, fresh=True)
-    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
+    trial = Trial.of(conditions)
+    walk, cmap = trial.walk, trial.cmap
     step = max(1, len(walk) // REMEMBERED)
-    truth = GroundTruth.of(conditions.room, poses_of(walk)[::step], poses_of(fresh))
-    views = np.asarray(walk.views[::step]), fresh.views
+    truth = trial.truth._replace(train=trial.truth.train[::step])
+    views = np.asarray(walk.views[::step]), trial.fresh.views
 
     growing, growth, begun = with_blank_afferents(cmap), [], 0
     for seen in [*(count for count in SEEN if count < len(walk)), len(walk)]:
         growing.partial_fit(walk.views[begun:seen], walk.odours[begun:seen])
         begun = seen
-        growth.append({"views": seen, **_figures(truth, _driven(growing, views))})
+        growth.append({"views": seen, **_driven(growing, views, truth).figures})
     order = np.random.default_rng(conditions.seed).permutation(cmap.charts)
     silencing = [
         {
             "silent": share,
-            **_figures(truth, _driven(lesioned(cmap, order[: round(share * len(order))]), views)),
+            **_driven(lesioned(cmap, order[: round(share * len(order))]), views, truth).figures,
         }
         for share in SILENT
     ]
-    driven, direct = _driven(cmap, views), _direct(cmap, views)
-    weights = {cells: afferent_weights(cmap, cells) for cells in Rates._fields}
+    driven, direct = _driven(cmap, views, truth), _direct(cmap, views, truth)
+    weights = {cells: afferent_weights(cmap, cells) for cells in POPULATIONS}
     centres = weights_of(cmap)["charts.centres"].numpy()
-    preferred = poses_of(walk)[pairwise_distances_argmin(centres, cmap.encode(walk.views))]
+    preferred = trial.truth.train[pairwise_distances_argmin(centres, cmap.encode(walk.views))]
     tables = {"growth": pd.DataFrame(growth), "silencing": pd.DataFrame(silencing)}
     return Result(
         metrics={
             **trust_report(cmap),
-            "driven": _figures(truth, driven),
-            "direct": _figures(truth, direct),
+            "driven": driven.figures,
+            "direct": direct.figures,
             "agreement": {
-                cells: _agreement(getattr(driven.test, cells), getattr(direct.test, cells))
-                for cells in Rates._fields
+                cells: _agreement(getattr(driven, cells).rates, getattr(direct, cells).rates)
+                for cells in POPULATIONS
             },
             "views_to_mature": {
-                cells: _mature(tables["growth"], f"{cells}_cells_passing") for cells in Rates._fields
+                cells: _mature(tables["growth"], f"{cells}_cells_passing") for cells in POPULATIONS
             },
             **{name: table.to_dict("records") for name, table in tables.items()},
         },
@@ -104,9 +119,9 @@ def development_and_lesions(conditions: Conditions) -> Result:
             **tables,
             "cells": as_one_table(
                 {
-                    f"{name}, {cells}": truth.measure(getattr(seen.test, cells))
+                    f"{name}, {cells}": getattr(seen, cells)
                     for name, seen in (("driven", driven), ("direct", direct))
-                    for cells in Rates._fields
+                    for cells in POPULATIONS
                 }
             ),
             "afferents": pd.concat(
@@ -117,16 +132,20 @@ def development_and_lesions(conditions: Conditions) -> Result:
             "afferents": plot_afferents(weights["place"], weights["heading"], preferred),
             "courses": plot_courses(tables["growth"], tables["silencing"]),
         },
+        captions={
+            "afferents": "Where the charts lie that a cell fires from, by the strength of their weights",
+            "courses": "How the cells come with views, and go with charts that fall silent",
+        },
     )
 
 
-def _driven(cmap: CognitiveMap, views: tuple[Any, Any]) -> Seen:
+def _driven(cmap: CognitiveMap, views: tuple[Any, Any], truth: GroundTruth) -> Seen:
     """Rates from sight, through the weights."""
     train, test = (perceive(cmap, batch) for batch in views)
-    return Seen(Rates(train.place, train.heading), Rates(test.place, test.heading))
+    return Seen((train.place, train.heading), truth.measure(test.place), truth.measure(test.heading))
 
 
-def _direct(cmap: CognitiveMap, views: tuple[Any, Any]) -> Seen:
+def _direct(cmap: CognitiveMap, views: tuple[Any, Any], truth: GroundTruth) -> Seen:
     """Rates that the tuning demands for what is recalled from sight."""
     preferred = weights_of(cmap)["heading.preferred"]
     cells = HeadDirectionCells(len(preferred), 1, generator=torch.Generator())
@@ -134,22 +153,9 @@ def _direct(cmap: CognitiveMap, views: tuple[Any, Any]) -> Seen:
     found = []
     for activity in (perceive(cmap, batch) for batch in views):
         place = cmap.perceive(odours=np.exp(activity.odour)).place
-        found.append(Rates(place, cells.tuning(torch.from_numpy(activity.phase)).numpy()))
-    return Seen(*found)
-
-
-def _figures(truth: GroundTruth, seen: Seen) -> dict[str, float]:
-    place, heading = (truth.measure(rates) for rates in seen.test)
-    train, test = (np.nan_to_num(batch.heading).astype(float) for batch in seen)
-    cosine, sine = Ridge(alpha=1.0).fit(train, _on_circle(truth.train[:, 2])).predict(test).T
-    turned = np.angle(np.exp(1j * (np.arctan2(sine, cosine) - truth.poses[:, 2])))
-    return {
-        "place_cells_passing": place.place_figures["place_cells_passing"],
-        "place_coverage": place.place_coverage,
-        "heading_cells_passing": heading.heading_figures["heading_cells_passing"],
-        **truth.position(seen.train.place, seen.test.place),
-        "heading_median_deg": float(np.rad2deg(np.median(np.abs(turned)))),
-    }
+        found.append((place, cells.tuning(torch.from_numpy(activity.phase)).numpy()))
+    train, test = found
+    return Seen(train, *(truth.measure(rates) for rates in test))
 
 
 def _on_circle(headings: Float[np.ndarray, "views"]) -> Float[np.ndarray, "views 2"]:

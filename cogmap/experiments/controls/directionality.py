@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
-from arena import Brownian, Camera, Motion, Track
+from arena import Brownian, Motion, Track
 from cogmap.cells import Tuning
-from cogmap.evaluation.populations import (
-    CellMetrics,
-    GroundTruth,
-    as_one_table,
-    competing_cells,
-    grow_map,
-    perceive,
-    trust_report,
-)
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.evaluation.ground_truth import CellMetrics, as_one_table
+from cogmap.evaluation.populations import competing_cells, trust_report
+from cogmap.experiments.conditions import Conditions
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
+from cogmap.experiments.trial import Trial
 from cogmap.plots import plot_cell_types, plot_examples
 
 DIRECTIONAL = 0.5
@@ -24,6 +20,7 @@ DIRECTIONAL = 0.5
 WALKS: dict[str, Motion] = {"open_field": Brownian(), "corridor": Track()}
 
 
+@experiment(room="furnished", views=17_000, takes=("nose", "camera", "body", "map"))
 def directionality(conditions: Conditions) -> Result:
     """Learn the same room all over and on a straight path, and ask in which direction its place cells fire.
 
@@ -41,26 +38,19 @@ def directionality(conditions: Conditions) -> Result:
     cells: dict[str, CellMetrics] = {}
     drawn: dict[str, dict[str, Tuning]] = {}
     for name, motion in WALKS.items():
-        walk = conditions.explore(motion, Camera.panoramic())
-        fresh = conditions.explore(motion, Camera.panoramic(), fresh=True)
-        train = poses_of(walk)
-        truth = GroundTruth(train, poses_of(fresh), train[:, :2])
-        cmap = grow_map(walk, conditions.map, seed=conditions.seed)
-        codes = cmap.encode(walk.views), cmap.encode(fresh.views)
-        rates = {
-            "vision_only": competing_cells(*codes, seed=conditions.seed)[0],
-            "fused": perceive(cmap, fresh.views).place,
+        trial = replace(Trial.of(conditions, motion), reachable=None)
+        found = {
+            "vision_only": trial.truth.measure(competing_cells(*trial.codes, seed=conditions.seed)[0]),
+            "fused": trial.place,
         }
-        found = {kind: truth.measure(batch) for kind, batch in rates.items()}
         metrics[name] = {
             kind: {**item.place_figures, "directional": _share(item)} for kind, item in found.items()
         }
-        metrics[name] |= trust_report(cmap)
+        metrics[name] |= trust_report(trial.cmap)
         label = name.replace("_", " ")
-        cells |= {f"{label}, {kind.replace('_', ' ')}": item for kind, item in found.items()}
-        drawn[name] = {
-            f"{label}, {kind.replace('_', ' ')}": truth.tuning(batch) for kind, batch in rates.items()
-        }
+        here = {f"{label}, {kind.replace('_', ' ')}": item for kind, item in found.items()}
+        drawn[name] = {population: item.tuning for population, item in here.items()}
+        cells |= here
     table = as_one_table(cells)
     return Result(
         metrics=metrics,
@@ -69,10 +59,17 @@ def directionality(conditions: Conditions) -> Result:
             "cells": plot_cell_types(table),
             **{f"examples_{name}": plot_examples(batch) for name, batch in drawn.items()},
         },
+        captions={
+            "cells": "What each cell tells of position and of heading, by walk and population",
+            **{
+                f"examples_{name}": f"Six cells of each population in the {name.replace('_', ' ')}"
+                for name in drawn
+            },
+        },
     )
 
 
 def _share(found: CellMetrics) -> float:
     """Share of directional cells among those with a field; 0 without any."""
-    vectors = found.table["in_field_direction_vector"].dropna()
+    vectors = found.place["in_field_direction_vector"].dropna()
     return float((vectors > DIRECTIONAL).mean()) if len(vectors) else 0.0

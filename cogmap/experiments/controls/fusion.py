@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from arena import Brownian, Camera
-from cogmap.evaluation.populations import (
-    GroundTruth,
-    as_one_table,
-    competing_cells,
-    grow_map,
-    perceive,
-    trust_report,
-)
-from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.evaluation.ground_truth import as_one_table
+from cogmap.evaluation.populations import competing_cells, trust_report
+from cogmap.experiments.conditions import Conditions
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
+from cogmap.experiments.trial import Trial
 from cogmap.plots import plot_cell_types, plot_examples
 
 
+@experiment(room="furnished", views=17_000, takes=("nose", "motion", "camera", "body", "map"))
 def fusion(conditions: Conditions) -> Result:
     """Compare cells that see, cells that smell, and cells that see what smell has taught them.
 
@@ -30,21 +25,15 @@ def fusion(conditions: Conditions) -> Result:
     the median over the cells that have a field. `seconds` are those of learning, by stage; `reason` and
     `metric_reason` say why the map is not to be trusted, or lays out no places.
     """
-    camera = Camera.panoramic()
-    walk = conditions.explore(Brownian(), camera)
-    fresh = conditions.explore(Brownian(), camera, fresh=True)
-    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
-    truth = GroundTruth.of(conditions.room, poses_of(walk), poses_of(fresh))
-    train, test = (perceive(cmap, item.views) for item in (walk, fresh))
-    codes = [cmap.encode(item.views) for item in (walk, fresh)]
-    smells = [np.log(item.odours) for item in (walk, fresh)]
-    rates = {
-        "vision only": competing_cells(*codes, seed=conditions.seed)[0],
-        "olfaction only": competing_cells(*smells, seed=conditions.seed)[0],
-        "fused, place": test.place,
-        "fused, heading": test.heading,
+    trial = Trial.of(conditions)
+    truth, cmap = trial.truth, trial.cmap
+    smells = [np.log(item.odours) for item in (trial.walk, trial.fresh)]
+    cells = {
+        "vision only": truth.measure(competing_cells(*trial.codes, seed=conditions.seed)[0]),
+        "olfaction only": truth.measure(competing_cells(*smells, seed=conditions.seed)[0]),
+        "fused, place": trial.place,
+        "fused, heading": trial.heading,
     }
-    cells = {name: truth.measure(found) for name, found in rates.items()}
     alone = {
         name: {**cells[name].place_figures, **cells[name].heading_figures}
         for name in ("vision only", "olfaction only")
@@ -58,7 +47,7 @@ def fusion(conditions: Conditions) -> Result:
             "fused": {
                 **cells["fused, place"].place_figures,
                 **cells["fused, heading"].heading_figures,
-                **score(test, truth.poses, train=(train, truth.train), reachable=truth.reachable),
+                **trial.score,
                 **{f"nose_{key}": value for key, value in nose.items()},
                 **trust_report(cmap),
                 "metric_reason": cmap.metric_reason_,
@@ -68,6 +57,10 @@ def fusion(conditions: Conditions) -> Result:
         tables={"cells": table},
         figures={
             "cells": plot_cell_types(table),
-            "examples": plot_examples({name: truth.tuning(found) for name, found in rates.items()}),
+            "examples": plot_examples({name: found.tuning for name, found in cells.items()}),
+        },
+        captions={
+            "cells": "What each cell tells of position and of heading, by population",
+            "examples": "Six cells of each population: rate maps, and rate by heading",
         },
     )

@@ -15,6 +15,7 @@ from arena import Arena, Brownian, Camera, Disc
 from cogmap.evaluation.homology_of_map import homologies
 from cogmap.evaluation.populations import grow_map, perceive
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_barcode_grid, plot_barcodes
 from cogmap.shape import Betti, Nerve, population_nerve
@@ -58,6 +59,12 @@ class Case(NamedTuple):
         return min(factors, default=None)
 
 
+@experiment(
+    room="open_field",
+    views=17_000,
+    takes=("nose", "camera", "map"),
+    extra_rooms=("furnished", "pillar", "two_pillars", "l_shape"),
+)
 def homology(conditions: Conditions) -> Result:
     """Count pieces, loops and voids of the view manifold, the fused map and both populations in every room.
 
@@ -75,7 +82,7 @@ def homology(conditions: Conditions) -> Result:
         for case in _visit(replace(conditions, room=room))
     ]
     populations = [case for case in cases if case.cloud in POPULATIONS]
-    misses = [case for case in cases if not case.right]
+    misses = {f"miss_{case.room}_{case.cloud}": case for case in cases if case.found and not case.right}
     return Result(
         metrics={
             "cases": len(cases),
@@ -91,9 +98,16 @@ def homology(conditions: Conditions) -> Result:
                 _by_room(cases, lambda case: case.expected),
             ),
             **{
-                f"miss_{case.room}_{case.cloud}": plot_barcodes({f"{case.room}, {case.cloud}": case.found})
-                for case in misses
-                if case.found is not None
+                name: plot_barcodes({f"{case.room}, {case.cloud}": case.found})
+                for name, case in misses.items()
+                if case.found
+            },
+        },
+        captions={
+            "barcodes": "Bars of loops and voids of all that a map knows, room by room",
+            **{
+                name: f"Bars of a case that came out wrong: {case.cloud} in {case.room}"
+                for name, case in misses.items()
             },
         },
     )

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from arena import Arena, Brownian, Camera, Nose, Recording
-from cogmap.evaluation.populations import GroundTruth, grow_map, perceive, trust_report
-from cogmap.evaluation.scoring import score
+from arena import Arena, Nose, Recording
+from cogmap.evaluation.populations import trust_report
 from cogmap.experiments.conditions import FRESH_SEED, Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
+from cogmap.experiments.trial import Trial
 from cogmap.plots import plot_cases
 
 PLACES = ((-1.5, -1.0), (1.6, 0.9), (1.2, -1.1), (-1.3, 1.0))
@@ -22,6 +23,7 @@ USUAL_SOURCES, USUAL_NOISE = 3, 0.1
 LABELS = {"sources": "odour sources", "noise": "noise of the nose"}
 
 
+@experiment(room="furnished", views=17_000, takes=("motion", "camera", "body", "map"))
 def odour_ablation(conditions: Conditions) -> Result:
     """Learn the same views with one to four odour sources, and with a nose of no noise to one of 30 %.
 
@@ -30,23 +32,24 @@ def odour_ablation(conditions: Conditions) -> Result:
     each of them keeps to one place (`neurons.atlas.disambiguation`). `single_field` is the share of place
     cells with exactly one field.
     """
-    camera = Camera.panoramic()
-    walk = conditions.explore(Brownian(), camera)
-    fresh = conditions.explore(Brownian(), camera, fresh=True)
-    truth = GroundTruth.of(conditions.room, poses_of(walk), poses_of(fresh))
+    trial = Trial.of(conditions)
     cases = [(count, USUAL_NOISE) for count in range(1, len(PLACES) + 1)]
     cases += [(USUAL_SOURCES, noise) for noise in NOISE if noise != USUAL_NOISE]
-    metrics = {
-        f"{count}_sources_{noise:g}_noise": _learn(conditions, truth, walk, fresh, count=count, noise=noise)
-        for count, noise in cases
-    }
+    metrics = {f"{count}_sources_{noise:g}_noise": _learn(trial, count, noise) for count, noise in cases}
     table = pd.DataFrame(
         [
             {"sources": count, "noise": noise, **metrics[f"{count}_sources_{noise:g}_noise"]}
             for count, noise in cases
         ]
     )
-    return Result(metrics=metrics, tables={"cases": table}, figures={"sources": plot_cases(table, LABELS)})
+    return Result(
+        metrics=metrics,
+        tables={"cases": table},
+        figures={"sources": plot_cases(table, LABELS)},
+        captions={
+            "sources": "What the cells tell of place with more sources of smell, and with a noisier nose",
+        },
+    )
 
 
 def smell(room: Arena, walk: Recording, *, count: int, noise: float, seed: int) -> np.ndarray:
@@ -56,20 +59,18 @@ def smell(room: Arena, walk: Recording, *, count: int, noise: float, seed: int) 
     return Nose(noise=noise).smell(concentration, walk.times, np.random.default_rng(seed))
 
 
-def _learn(
-    conditions: Conditions, truth: GroundTruth, walk: Recording, fresh: Recording, *, count: int, noise: float
-) -> dict[str, Any]:
+def _learn(trial: Trial, count: int, noise: float) -> dict[str, Any]:
+    conditions = trial.conditions
     smells = [
         smell(conditions.room, item, count=count, noise=noise, seed=conditions.seed + late)
-        for item, late in ((walk, 0), (fresh, FRESH_SEED))
+        for item, late in ((trial.walk, 0), (trial.fresh, FRESH_SEED))
     ]
-    cmap = grow_map(replace(walk, odours=smells[0]), conditions.map, seed=conditions.seed)
-    train, test = (perceive(cmap, item.views) for item in (walk, fresh))
-    place = truth.measure(test.place)
+    trial = replace(trial, walk=replace(trial.walk, odours=smells[0]))
+    train, test = trial.train.place, trial.test.place
     return {
-        **score(test, truth.poses, train=(train, truth.train), reachable=truth.reachable),
-        **{f"nose_{key}": value for key, value in truth.position(*map(np.log, smells)).items()},
-        **{f"place_{key}": value for key, value in truth.position(train.place, test.place).items()},
-        "single_field": float((place.table["fields"] == 1).mean()),
-        **trust_report(cmap),
+        **trial.score,
+        **{f"nose_{key}": value for key, value in trial.truth.position(*map(np.log, smells)).items()},
+        **{f"place_{key}": value for key, value in trial.truth.position(train, test).items()},
+        "single_field": float((trial.place.place["fields"] == 1).mean()),
+        **trust_report(trial.cmap),
     }

@@ -8,18 +8,13 @@ import numpy as np
 
 from arena import Brownian, Camera, Motion, Track
 from arena.motions.slow_turning import SlowTurning
+from cogmap.evaluation.ground_truth import CellMetrics, as_one_table
 from cogmap.evaluation.peers.slow_features import slow_cells
-from cogmap.evaluation.populations import (
-    CellMetrics,
-    GroundTruth,
-    as_one_table,
-    grow_map,
-    perceive,
-    trust_report,
-)
-from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.evaluation.populations import trust_report
+from cogmap.experiments.conditions import Conditions
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
+from cogmap.experiments.trial import Trial
 from cogmap.plots import plot_cell_types
 
 
@@ -40,7 +35,8 @@ WALKS = {
 }
 
 
-def slow_feature_comparison(conditions: Conditions) -> Result:
+@experiment(room="furnished", views=17_000, takes=("nose", "camera", "body", "map"))
+def slow_features(conditions: Conditions) -> Result:
     """Learn the same room on four walks, by slowness and by smell.
 
     Slow feature analysis takes the Sanger codes of the views in their order; the fusion takes views and
@@ -62,37 +58,37 @@ def slow_feature_comparison(conditions: Conditions) -> Result:
             kind.replace(" ", "_"): plot_cell_types(table[table["population"].str.endswith(kind)])
             for kind in ("slow features", "fused place", "fused heading")
         },
+        captions={
+            "slow_features": "What each slow feature tells of place and heading, by walk",
+            "fused_place": "What each place cell of the map tells of place and heading, by walk",
+            "fused_heading": "What each head-direction cell of the map tells of place and heading, by walk",
+        },
     )
 
 
 def _learn(conditions: Conditions, pair: WalkPair) -> tuple[dict[str, Any], dict[str, CellMetrics]]:
     camera = Camera.panoramic()
     walk = conditions.explore(pair.learnt, camera)
-    fresh = conditions.explore(pair.scored, camera, fresh=True)
     if pair.shuffled:
         walk = walk[np.random.default_rng(conditions.seed).permutation(len(walk))]
-    train, poses = poses_of(walk), poses_of(fresh)
-    truth = GroundTruth(train, poses, train[:, :2])
-    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
-    codes = [cmap.encode(item.views) for item in (walk, fresh)]
-    learnt, slow = slow_cells(codes[0], *codes, seed=conditions.seed)
-    before, after = (perceive(cmap, item.views) for item in (walk, fresh))
+    trial = Trial(conditions, walk, conditions.explore(pair.scored, camera, fresh=True))
+    learnt, slow = slow_cells(trial.codes[0], *trial.codes, seed=conditions.seed)
     found = {
-        "slow features": truth.measure(slow.rates),
-        "fused place": truth.measure(after.place),
-        "fused heading": truth.measure(after.heading),
+        "slow features": trial.truth.measure(slow.rates),
+        "fused place": trial.place,
+        "fused heading": trial.heading,
     }
     metrics = {
         "slow_features": {
             **found["slow features"].place_figures,
             **found["slow features"].heading_figures,
-            **truth.position(learnt.features, slow.features),
+            **trial.truth.position(learnt.features, slow.features),
         },
         "fused": {
             **found["fused place"].place_figures,
             **found["fused heading"].heading_figures,
-            **score(after, poses, train=(before, train)),
-            **trust_report(cmap),
+            **trial.score,
+            **trust_report(trial.cmap),
         },
     }
     return metrics, found

@@ -14,6 +14,7 @@ from cogmap.cells import HeadingFrame, heading_errors
 from cogmap.evaluation.quasi_metric import quasi_metric
 from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.paper.view_manifold import view_manifold
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import (
     plot_barcodes,
@@ -32,6 +33,7 @@ NEIGHBOURS = 10
 """In the embedding, from whose poses that of a view is read."""
 
 
+@experiment(room="furnished", views=17_000)
 def brownian(conditions: Conditions) -> Result:
     """Figs. 3 and 6: find the solid torus, and read poses off four coordinates of it.
 
@@ -71,6 +73,15 @@ def brownian(conditions: Conditions) -> Result:
             "position": plot_position(read.positions, truth[:, :2]),
             "distances": plot_quasi_metric(near.pairs, near.places),
             "barcodes": plot_barcodes({"images of a walk": found.shape}),
+        },
+        captions={
+            "room": "The room from above, with the way through it",
+            "torus": "The first three coordinates of the views, coloured by heading and by place",
+            "torus_fourth": "The first, second and fourth coordinate, coloured by heading and by place",
+            "heading": "Heading read off the views against the true one",
+            "position": "Position read off the views against the true one",
+            "distances": "Distance along the manifold against distance between poses",
+            "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
         },
     )
 

@@ -8,6 +8,7 @@ from arena import Camera, Cyclic
 from cogmap.evaluation.quasi_metric import quasi_metric
 from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.paper.view_manifold import view_manifold
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import (
     plot_barcodes,
@@ -23,6 +24,7 @@ COMPONENTS = 4
 """Coordinates of the embedding that the two ends of the cylinder are looked for in."""
 
 
+@experiment(room="furnished", views=4_000)
 def cyclic(conditions: Conditions) -> Result:
     """Figs. 4 and 5: find the cylinder, the angle around it and the height along it.
 
@@ -51,6 +53,14 @@ def cyclic(conditions: Conditions) -> Result:
             "translation": plot_translation(height[known], along[known], poses[known, 2]),
             "distances": plot_quasi_metric(near.pairs, near.places),
             "barcodes": plot_barcodes({"images of a run to and fro": found.shape}),
+        },
+        captions={
+            "walk": "The way through the room, and place and heading over time",
+            "cylinder": "Coordinates on the manifold, coloured by heading and by place along the way",
+            "heading": "Heading read off the views against the true one",
+            "translation": "Coordinate along the cylinder against place along the way",
+            "distances": "Distance along the manifold against distance between poses",
+            "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
         },
     )
 

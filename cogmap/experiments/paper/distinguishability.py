@@ -14,6 +14,7 @@ from sklearn.decomposition import PCA
 from arena import Arena, Brownian, Camera
 from cogmap.evaluation.pose_agreement import motion_distances
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.graph import nearest_points
 from cogmap.plots import plot_barcodes, plot_confusion, plot_views
@@ -38,6 +39,7 @@ class _Seen(NamedTuple):
     """A view and that from the opposite pose."""
 
 
+@experiment(room="white_rectangle", views=17_000, any_room=False)
 def distinguishability(conditions: Conditions) -> Result:
     """Count how often the view most like a query was taken from about the opposite pose.
 
@@ -62,6 +64,11 @@ def distinguishability(conditions: Conditions) -> Result:
                 2,
             ),
             "barcodes": plot_barcodes({f"{name} room": item.shape for name, item in seen.items()}),
+        },
+        captions={
+            "confusion": "Where the nearest view was taken, turned half round or not",
+            "views": "A view of each room, beside that from the opposite pose",
+            "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
         },
     )
 

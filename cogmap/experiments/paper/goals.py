@@ -11,9 +11,11 @@ from jaxtyping import Float
 
 from arena import Arena, Brownian, Camera, Chemotaxis, Disc, Recording
 from cogmap.cells import fit_heading_frame, heading_errors
-from cogmap.evaluation.populations import GroundTruth, as_one_table
+from cogmap.evaluation.ground_truth import GroundTruth, as_one_table
+from cogmap.evaluation.populations import reachable_places
 from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.paper.distinguishability import retina_codes
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.graph import nearest_points, neighbour_graph
 from cogmap.plots import plot_cell_types, plot_examples, plot_goals
@@ -36,6 +38,7 @@ PEAK = 20.0
 """Rate on the ring itself, Hz."""
 
 
+@experiment(room="furnished", views=17_000, takes=("camera",))
 def goals(conditions: Conditions) -> Result:
     """Fig. 8: climb an odour to its maximum, look around there, be pushed away, come back; move the goal.
 
@@ -66,12 +69,11 @@ def goals(conditions: Conditions) -> Result:
     nearest = nearest_points(codes, 1, queries=test).indices[:, 0]
     turn = _aligned(orientation, poses[:, 2])
     read = _aligned(orientation[nearest], poses_of(fresh)[:, 2])
-    truth = GroundTruth.of(conditions.room, poses, poses_of(fresh))
-    rates = {
-        "rings, place": PEAK * np.exp(-0.5 * (place / width) ** 2),
-        "rings, heading": orientation_rates(orientation[nearest]),
+    truth = GroundTruth(poses, poses_of(fresh), reachable_places(conditions.room, Disc()))
+    cells = {
+        "rings, place": truth.measure(PEAK * np.exp(-0.5 * (place / width) ** 2)),
+        "rings, heading": truth.measure(orientation_rates(orientation[nearest])),
     }
-    cells = {name: truth.measure(found) for name, found in rates.items()}
     table = as_one_table(cells)
     views = pd.DataFrame(poses, columns=["x_m", "y_m", "heading_rad"]).assign(
         ring=ring, orientation_rad=poses[:, 2] + turn
@@ -100,7 +102,12 @@ def goals(conditions: Conditions) -> Result:
         figures={
             "goals": plot_goals(conditions.room, views),
             "cells": plot_cell_types(table),
-            "examples": plot_examples({name: truth.tuning(found) for name, found in rates.items()}),
+            "examples": plot_examples({name: found.tuning for name, found in cells.items()}),
+        },
+        captions={
+            "goals": "The views at each goal, as strokes that point where the body looks",
+            "cells": "What each cell tells of position and of heading, by population",
+            "examples": "Six cells of each population: rate maps, and rate by heading",
         },
     )
 

@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from arena import Brownian, Camera
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.features import BagOfWords
 from cogmap.navigation import Localiser, Location, image_codes
@@ -21,6 +22,7 @@ QUERIES, NEIGHBOURS = 5, 5
 """Of Table 3."""
 
 
+@experiment(room="furnished", views=17_000)
 def localisation(conditions: Conditions) -> Result:
     """Table 3: place the views of a fresh walk, taken with a noisy camera, among remembered ones.
 
@@ -59,6 +61,10 @@ def localisation(conditions: Conditions) -> Result:
                 train[neighbours],
             ),
             "errors": plot_localisation(table),
+        },
+        captions={
+            "neighbours": "Fresh views beside the known views they are placed among",
+            "errors": "How far from the true pose fresh views are placed",
         },
     )
 

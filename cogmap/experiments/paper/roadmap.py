@@ -17,6 +17,7 @@ from cogmap.evaluation.deviation import path_deviation, path_length
 from cogmap.evaluation.peers.prm import prm_paths
 from cogmap.evaluation.shortest import shortest_lengths
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.navigation import PanoramaCode, VisualRoadmap
 from cogmap.plots import plot_routes, plot_views
@@ -43,6 +44,7 @@ class _Plan(NamedTuple):
     milliseconds: float
 
 
+@experiment(room="obstacles", views=17_000)
 def roadmap(conditions: Conditions) -> Result:
     """Algorithm 1 and Fig. 7: plan between 200 pairs of poses over views, and beside it with OMPL's PRM.
 
@@ -90,6 +92,10 @@ def roadmap(conditions: Conditions) -> Result:
         figures=_figures(
             room, [(plans[pair], None if peer is None else peer[pair]) for pair in shown], poses
         ),
+        captions={
+            "routes": "Routes planned over views, around obstacles, and beside them those of the peer",
+            "images": "What is seen on the way along one route",
+        },
     )
 
 

@@ -18,6 +18,7 @@ from cogmap.cells import HeadingFrame, heading_errors
 from cogmap.evaluation.quasi_metric import quasi_metric
 from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.paper.view_manifold import view_manifold
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.plots import plot_barcodes, plot_compass, plot_embedding, plot_quasi_metric, plot_views
 from cogmap.threads import one_thread
@@ -29,6 +30,7 @@ DECAYS = (1e-6, 1e-4, 1e-2)
 """Weight decays, of which the validation views choose one."""
 
 
+@experiment(room="furnished", views=5_000)
 def rotation(conditions: Conditions) -> Result:
     """Fig. 1 and Table 2: spin, find the ring, and predict the heading from coordinates on the manifold."""
     walk = conditions.explore(Rotation(), Camera.perspective())
@@ -54,6 +56,13 @@ def rotation(conditions: Conditions) -> Result:
             ),
             "distances": plot_quasi_metric(near.pairs, near.places),
             "barcodes": plot_barcodes({"images of a spin": found.shape}),
+        },
+        captions={
+            "views": "Some of the views, with where they were taken",
+            "ring": "The first two coordinates of the views of a spin, coloured by heading",
+            "prediction": "Heading predicted by a small network against the true one",
+            "distances": "Distance along the manifold against distance between poses",
+            "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
         },
     )
 

@@ -11,6 +11,7 @@ from jaxtyping import Float, Int
 from arena import Brownian, Camera
 from cogmap.evaluation.pose_agreement import motion_distances, pose_agreement
 from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.features import BagOfWords, cosine_distances, earth_mover_distances, pixel_distances
 from cogmap.plots import plot_likeness
@@ -22,6 +23,7 @@ SHOWN = 4
 """Queries that are drawn with the views that each measure finds most like them."""
 
 
+@experiment(room="furnished", views=5_000)
 def similarity(conditions: Conditions) -> Result:
     """Compare pixels, bags of words and moved light by the poses of the views that they call alike.
 
@@ -55,7 +57,12 @@ def similarity(conditions: Conditions) -> Result:
         name: np.asarray(walk[found[shown]].views) for name, found in best.items()
     }
     return Result(
-        metrics=metrics, tables={"nearest": table}, figures={"likeness": plot_likeness(table, pictures)}
+        metrics=metrics,
+        tables={"nearest": table},
+        figures={"likeness": plot_likeness(table, pictures)},
+        captions={
+            "likeness": "Which views each measure of likeness takes for the same",
+        },
     )
 
 

@@ -16,16 +16,14 @@ from pyarrow import ArrowException
 from cogmap.atomic import METRICS
 from cogmap.errors import CogmapError
 from cogmap.experiments.provenance import PROVENANCE
-from cogmap.pages.report.captions import caption
+from cogmap.experiments.registry import experiments
+from cogmap.experiments.result import CAPTIONS
 from cogmap.tables import as_rows, shown
 
 SWEPT = ("table.parquet", "table.csv")
 """The table of a sweep, in the order in which they are tried."""
 LONGEST = 500
 """Rows of a sweep's table that are shown."""
-PARAMETERS = ("experiment", "arena", "views", "charts", "seed")
-"""Metrics that were not found but given."""
-_PNG = b"\x89PNG\r\n\x1a\n"
 _Read = TypeVar("_Read")
 
 
@@ -56,6 +54,8 @@ class Contents:
     """Everything that a report shows."""
 
     title: str
+    summary: str
+    """What the experiment does; empty for any other result."""
     parameters: list[tuple[str, str, str]]
     """Name, value and unit of what was given."""
     figures: list[tuple[str, str, str]]
@@ -83,19 +83,27 @@ def read_contents(folder: Path) -> Contents:
             f"{folder} is not the result of a demo, an experiment or a sweep: it has neither {METRICS} nor "
             f"{SWEPT[1]}; give a folder that one of them wrote"
         )
-    metrics, about = (
-        _read(folder / name, _record) if (folder / name).is_file() else {} for name in (METRICS, PROVENANCE)
+    metrics, about, captions = (
+        _read(folder / name, _record) if (folder / name).is_file() else {}
+        for name in (METRICS, PROVENANCE, CAPTIONS)
     )
-    given = {name: metrics[name] for name in PARAMETERS if name in metrics}
+    # Metrics that were not found but given.
+    parameters = ("experiment", "arena", "views", "charts", "seed")
+    given = {name: metrics[name] for name in parameters if name in metrics}
     found = {name: value for name, value in metrics.items() if name not in given}
     kind = "sweep" if table is not None else str(given.get("experiment", "demo"))
     place = f" in {given['arena']}" if "arena" in given else ""
+    chosen = experiments().get(kind)
     behind = [path for path in sorted(folder.glob("*.parquet")) if path.name not in SWEPT]
     return Contents(
         title=f"{kind.replace('_', ' ').capitalize()}{place}",
+        summary=chosen.summary if chosen else "",
         parameters=as_rows({**given, **about.get("different", {})}),
         figures=as_rows(found),
-        pictures=[_read(path, lambda path: _picture(path, folder)) for path in sorted(folder.rglob("*.png"))],
+        pictures=[
+            _read(path, lambda path: _picture(path, folder, captions))
+            for path in sorted(folder.rglob("*.png"))
+        ],
         tables=[
             *([] if table is None else [_read(table, _whole)]),
             *(_read(path, _summary) for path in behind),
@@ -126,15 +134,16 @@ def _text(path: Path) -> str:
     return path.read_text("utf-8")
 
 
-def _picture(path: Path, folder: Path) -> Picture:
+def _picture(path: Path, folder: Path, captions: dict[str, str]) -> Picture:
+    """Read a figure; one without a caption has only its name."""
     data = path.read_bytes()
-    if not data.startswith(_PNG) or len(data) < 24:
+    if not data.startswith(b"\x89PNG\r\n\x1a\n") or len(data) < 24:
         raise ValueError("it is no PNG picture")
     width, height = (int.from_bytes(data[start : start + 4]) for start in (16, 20))
     name = path.relative_to(folder).with_suffix("").as_posix()
-    return Picture(
-        name, caption(path.stem), f"data:image/png;base64,{base64.b64encode(data).decode()}", width, height
-    )
+    caption = captions.get(path.stem, path.stem.replace("_", " ").capitalize())
+    uri = f"data:image/png;base64,{base64.b64encode(data).decode()}"
+    return Picture(name, caption, uri, width, height)
 
 
 def _whole(path: Path) -> Table:

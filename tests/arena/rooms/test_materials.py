@@ -4,10 +4,10 @@ import sys
 import numpy as np
 import pytest
 
-from arena.rooms.materials import LEVELS, MATERIALS, TEXEL, TILE, mean_colour, mip_maps, texture
+from arena.rooms.materials import LEVELS, TEXEL, TILE, materials, mean_colour, mip_maps, texture
 
 PLAIN = {"white", "blue"}
-NAMES = tuple(sorted(MATERIALS))
+NAMES = tuple(materials())
 
 
 @pytest.mark.parametrize("name", NAMES)

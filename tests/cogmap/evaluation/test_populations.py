@@ -1,56 +1,17 @@
 import numpy as np
-import pytest
 
-from arena import Arena, Brownian, Camera, explore
-from cogmap.evaluation.populations import GroundTruth, as_one_table, competing_cells, grow_map
+from arena import Arena, Brownian, Camera, Disc, explore
+from cogmap.evaluation.ground_truth import GroundTruth
+from cogmap.evaluation.populations import competing_cells, grow_map, reachable_places
 
 
-@pytest.fixture(scope="module")
-def truth() -> GroundTruth:
-    room = Arena.load("open_field")
-    rng = np.random.default_rng(0)
+def test_cells_that_compete_for_places_are_place_cells() -> None:
+    room, rng = Arena.load("open_field"), np.random.default_rng(0)
     train, poses = (
         np.column_stack([room.sample_free(4000, 0.18, rng), rng.uniform(-np.pi, np.pi, 4000)])
         for _ in range(2)
     )
-    return GroundTruth.of(room, train, poses)
-
-
-def place_rates(poses: np.ndarray) -> np.ndarray:
-    centres = np.random.default_rng(1).uniform([-1.5, -1.0], [1.5, 1.0], (40, 2))
-    return 10 * np.exp(-((poses[:, None, :2] - centres) ** 2).sum(axis=2) / 0.18)
-
-
-def heading_rates(poses: np.ndarray) -> np.ndarray:
-    preferred = np.linspace(-np.pi, np.pi, 20, endpoint=False)
-    return 10 * np.exp(5 * (np.cos(poses[:, 2:] - preferred) - 1))
-
-
-def test_ideal_cells_pass_as_what_they_are(truth: GroundTruth) -> None:
-    place, heading = (truth.measure(tuned(truth.poses)) for tuned in (place_rates, heading_rates))
-    assert place.place_figures["place_cells_passing"] == 1
-    assert place.heading_figures["heading_cells_passing"] == 0
-    assert place.place_figures["in_field_direction_vector"] < 0.15
-    assert place.place_coverage > 0.75
-    assert heading.heading_figures["heading_cells_passing"] == 1
-    assert heading.place_figures["place_cells_passing"] == heading.place_coverage == 0
-    table = as_one_table({"place": place, "heading": heading})
-    assert table.groupby("population").size().to_dict() == {"place": 40, "heading": 20}
-
-
-def test_cells_tied_to_both_pass_as_neither(truth: GroundTruth) -> None:
-    both = truth.measure(place_rates(truth.poses)[:, :20] * heading_rates(truth.poses))
-    assert both.place_figures["place_cells_passing"] == both.heading_figures["heading_cells_passing"] == 0
-    assert both.place_figures["in_field_direction_vector"] > 0.8
-
-
-def test_cells_without_a_compass_are_silent(truth: GroundTruth) -> None:
-    blind = truth.measure(np.full((4000, 5), np.nan))
-    assert blind.heading_figures == {"heading_cells_passing": 0.0}
-    assert blind.place_figures == {"place_cells_passing": 0.0, "place_coverage": 0.0, "field_area_m2": 0.0}
-
-
-def test_cells_that_compete_for_places_are_place_cells(truth: GroundTruth) -> None:
+    truth = GroundTruth(train, poses, reachable_places(room, Disc()))
     (rates,) = competing_cells(truth.train[:, :2], truth.poses[:, :2], seed=0, cells=60)
     assert truth.measure(rates).place_figures["place_cells_passing"] > 0.9
     assert truth.position(truth.train[:, :2], truth.poses[:, :2])["position_median_m"] < 0.05
@@ -63,3 +24,9 @@ def test_a_map_is_grown_as_told() -> None:
     other = grow_map(walk, {"charts": 30, "place_cells": 20}, seed=3)
     assert (other.charts, other.seed) == (30, 3)
     assert other.perceive(odours=walk.odours).place.shape == (120, 20)
+
+
+def test_a_small_body_reaches_more() -> None:
+    room = Arena.load("open_field")
+    small, large = (np.ptp(reachable_places(room, Disc(radius=radius)), axis=0) for radius in (0.05, 0.4))
+    assert (small - large > 0.6).all()

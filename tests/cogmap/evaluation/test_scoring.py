@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from cogmap.errors import CogmapError
+from cogmap.evaluation.ground_truth import GroundTruth
 from cogmap.evaluation.scoring import Perceived, score
 
 SOURCES = np.array([[-1.5, -1.0], [1.6, 0.9], [1.2, -1.1]])
@@ -188,3 +189,15 @@ def test_without_a_compass_what_applies_is_left(train: tuple[Ideal, np.ndarray],
     seeing = score(activity, poses, train=train)
     applies = {key: value for key, value in seeing.items() if not key.startswith("heading")}
     assert score(blind, poses, train=train) == {**applies, "heading_cells_passing": 0.0}
+
+
+def test_cells_that_have_been_measured_are_not_measured_again(
+    train: tuple[Ideal, np.ndarray], poses: np.ndarray
+) -> None:
+    activity = ideal(poses, seed=1)
+    truth = GroundTruth(train[1], poses, poses[:, :2])
+    cells = truth.measure(activity.place), truth.measure(activity.heading)
+    assert score(activity, poses, train=train, cells=cells) == score(activity, poses, train=train)
+    none = truth.measure(0 * activity.place), truth.measure(0 * activity.heading)
+    record = score(activity, poses, train=train, cells=none)
+    assert record["place_cells_passing"] == record["place_coverage"] == record["heading_cells_passing"] == 0

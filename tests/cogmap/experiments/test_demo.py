@@ -31,6 +31,7 @@ def test_it_writes_every_figure_the_map_and_the_metrics(result: tuple[Path, dict
     for name in FIGURES:
         assert matplotlib.image.imread(out / f"{name}.png").std() > 0.01
     assert json.loads((out / "metrics.json").read_text(encoding="utf-8")) == metrics
+    assert sorted(json.loads((out / "captions.json").read_text(encoding="utf-8"))) == FIGURES
     assert CognitiveMap.load(out / "map").trusted_ == metrics["trusted"]
     assert metrics.keys() >= KEYS
 

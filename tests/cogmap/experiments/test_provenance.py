@@ -9,7 +9,7 @@ import pytest
 from arena import Arena, Nose
 from cogmap import cli
 from cogmap.experiments.provenance import ROOM, write_provenance
-from cogmap.experiments.registry import EXPERIMENTS, Experiment, experiment
+from cogmap.experiments.registry import Experiment, experiments, run_experiment
 from cogmap.experiments.result import Result
 
 
@@ -25,9 +25,9 @@ def test_the_command_repeats_the_result(where: str, tmp_path: Path, monkeypatch:
         4000,
         any_room=bool(where),
     )
-    monkeypatch.setitem(EXPERIMENTS, "cyclic", quick)
+    monkeypatch.setitem(experiments(), "cyclic", quick)
     first, second = tmp_path / "first", tmp_path / "second"
-    experiment("cyclic", first, views=200, seed=3)
+    run_experiment("cyclic", first, views=200, seed=3)
     command = shlex.split(written(first)["command"])
     assert " ".join(command) == f"cogmap experiment cyclic {where}--views 200 --seed 3"
     monkeypatch.setattr("sys.argv", [*command, "--out", str(second)])

@@ -8,7 +8,10 @@ import pytest
 
 from arena import Arena, Nose
 from cogmap import CogmapError
-from cogmap.experiments.registry import EXPERIMENTS, experiment
+from cogmap.experiments.conditions import Conditions
+from cogmap.experiments.registry import experiment, experiments, listing, run_experiment
+from cogmap.experiments.result import Result
+from cogmap.tables import as_markdown
 
 VIEWS = {
     "rotation": 300,
@@ -41,14 +44,38 @@ KEYS = {
 }
 
 
+def test_each_says_what_it_does_and_what_it_is_about() -> None:
+    found = listing()
+    assert {entry["about"] for entry in found} == {"Experiments of the paper", "Controls of the cells"}
+    assert all(entry["what it does"].endswith(".") for entry in found)
+    assert len(found) == len(experiments()) >= 17
+
+
+def test_the_table_of_the_documentation_is_that_of_the_registry() -> None:
+    page = Path(__file__).parents[3] / "docs" / "experiments.md"
+    assert page.read_text(encoding="utf-8") == as_markdown(listing()) + "\n", (
+        "write it anew: cogmap experiment --list > docs/experiments.md"
+    )
+
+
+def test_no_two_have_the_same_name() -> None:
+    def fusion(_: Conditions) -> Result:
+        raise AssertionError
+
+    with pytest.raises(
+        CogmapError, match=r"experiment 'fusion' in cogmap.experiments.controls.fusion already"
+    ):
+        experiment(room="furnished", views=200)(fusion)
+
+
 @pytest.mark.parametrize("name", VIEWS)
 def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> None:
     out = tmp_path / name
-    result = experiment(name, out, views=VIEWS[name], seed=1)
+    result = run_experiment(name, out, views=VIEWS[name], seed=1)
     assert result.metrics.keys() >= {"experiment", "arena", "views", "seed"} | KEYS[name]
-    assert result.metrics["arena"] == EXPERIMENTS[name].room
+    assert result.metrics["arena"] == experiments()[name].room
     assert json.loads((out / "metrics.json").read_text(encoding="utf-8")) == result.metrics
-    assert {file.stem for file in out.glob("*.png")} == result.figures.keys()
+    assert {file.stem for file in out.glob("*.png")} == result.figures.keys() == result.captions.keys()
     assert {file.stem for file in out.glob("*.parquet")} == result.tables.keys()
     for figure in result.figures:
         assert matplotlib.image.imread(out / f"{figure}.png").std() > 0.01
@@ -57,14 +84,14 @@ def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> No
 
 
 def test_the_white_room_is_confused_and_the_blue_wall_is_not() -> None:
-    metrics = experiment("distinguishability", views=1200).metrics
+    metrics = run_experiment("distinguishability", views=1200).metrics
     assert 0.4 < metrics["confusion_white"] < 0.6
     assert metrics["confusion_blue_wall"] < 0.02
 
 
 def test_the_same_seed_gives_the_same_tables() -> None:
     room = Arena.load("open_field")
-    one, same = (experiment("rotation", views=200, seed=2, room=room) for _ in range(2))
+    one, same = (run_experiment("rotation", views=200, seed=2, room=room) for _ in range(2))
     assert one.metrics["arena"] == "open_field"
     assert one.metrics == same.metrics
     for name, table in one.tables.items():
@@ -73,28 +100,31 @@ def test_the_same_seed_gives_the_same_tables() -> None:
 
 def test_what_has_rooms_of_its_own_is_done_nowhere_else() -> None:
     with pytest.raises(CogmapError, match="rooms of its own"):
-        experiment("distinguishability", room=Arena.load("furnished"))
+        run_experiment("distinguishability", room=Arena.load("furnished"))
 
 
 @pytest.mark.parametrize(
     ("name", "views", "says"),
-    [("levitation", None, "choose one of rotation"), ("rotation", 10, "views is 10")],
+    [
+        ("levitation", None, "unknown experiment 'levitation'; choose one of .*rotation"),
+        ("rotation", 10, "views is 10"),
+    ],
 )
 def test_what_cannot_be_done_is_refused_and_nothing_is_written(
     name: str, views: int | None, says: str, tmp_path: Path
 ) -> None:
     with pytest.raises(CogmapError, match=says):
-        experiment(name, tmp_path / "out", views=views)
+        run_experiment(name, tmp_path / "out", views=views)
     assert not list(tmp_path.iterdir())
 
 
 def test_another_folder_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.txt").write_text("years of work", encoding="utf-8")
     with pytest.raises(CogmapError, match="not the result of an experiment"):
-        experiment("rotation", tmp_path, views=200)
+        run_experiment("rotation", tmp_path, views=200)
     assert [file.name for file in tmp_path.iterdir()] == ["thesis.txt"]
 
 
 def test_what_an_experiment_does_not_take_is_refused() -> None:
     with pytest.raises(CogmapError, match="rotation does not take another nose"):
-        experiment("rotation", views=200, nose=Nose(noise=0.3))
+        run_experiment("rotation", views=200, nose=Nose(noise=0.3))

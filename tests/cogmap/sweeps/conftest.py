@@ -3,7 +3,7 @@ import pytest
 
 from arena import Brownian, Camera
 from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.registry import EXPERIMENTS, Experiment
+from cogmap.experiments.registry import Experiment, experiments
 from cogmap.experiments.result import Result
 
 
@@ -27,5 +27,5 @@ def toy(conditions: Conditions) -> Result:
 @pytest.fixture(autouse=True)
 def toys(monkeypatch: pytest.MonkeyPatch) -> None:
     everything = ("nose", "motion", "camera", "map")
-    monkeypatch.setitem(EXPERIMENTS, "toy", Experiment(toy, "furnished", 200, takes=everything))
-    monkeypatch.setitem(EXPERIMENTS, "at_home", Experiment(toy, "furnished", 200, any_room=False))
+    monkeypatch.setitem(experiments(), "toy", Experiment(toy, "furnished", 200, takes=everything))
+    monkeypatch.setitem(experiments(), "at_home", Experiment(toy, "furnished", 200, any_room=False))

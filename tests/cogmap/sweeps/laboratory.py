@@ -9,12 +9,13 @@ import numpy as np
 from arena import Brownian, Camera
 from cogmap.cli import main
 from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.registry import EXPERIMENTS, Experiment
+from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 
 DIARY, SECONDS = Path(os.environ["DIARY"]), float(os.environ.get("SECONDS", "0.1"))
 
 
+@experiment(room="furnished", views=200, takes=("nose", "map"))
 def cheap(conditions: Conditions) -> Result:
     """Take a small walk and sleep a little."""
     with DIARY.open("a", encoding="utf-8") as diary:
@@ -28,6 +29,5 @@ def cheap(conditions: Conditions) -> Result:
     return Result({"smell": smell * conditions.map["charts"], "seen": seen, "trusted": conditions.seed < 2})
 
 
-EXPERIMENTS["cheap"] = Experiment(cheap, "furnished", 200, takes=("nose", "map"))
 if __name__ == "__main__":
     main()

@@ -13,7 +13,7 @@ from filelock import FileLock
 
 from cogmap import CogmapError, Plan, UnlikeArithmeticWarning, cli, sweep
 from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.registry import EXPERIMENTS, Experiment
+from cogmap.experiments.registry import Experiment, experiments
 from cogmap.portable import arithmetic
 from cogmap.sweeps import running
 from cogmap.sweeps.ledger import is_full_disk
@@ -27,13 +27,13 @@ UNLUCKY = Plan.create(experiment="toy", grid={"map.charts": [12, 13, 40]})
 def counted(monkeypatch: pytest.MonkeyPatch) -> list[Conditions]:
     """Every setting that the experiment was done in."""
     done: list[Conditions] = []
-    usual = EXPERIMENTS["toy"]
+    usual = experiments()["toy"]
 
     def run(conditions: Conditions) -> Any:
         done.append(conditions)
         return usual.run(conditions)
 
-    monkeypatch.setitem(EXPERIMENTS, "toy", usual._replace(run=run))
+    monkeypatch.setitem(experiments(), "toy", usual._replace(run=run))
     return done
 
 
@@ -101,8 +101,8 @@ def test_a_point_that_is_mended_loses_its_error(tmp_path: Path, monkeypatch: pyt
             Conditions(conditions.room, conditions.views, library=conditions.library, map={"charts": 40})
         )
 
-    toy = EXPERIMENTS["toy"]
-    monkeypatch.setitem(EXPERIMENTS, "toy", toy._replace(run=mended))
+    toy = experiments()["toy"]
+    monkeypatch.setitem(experiments(), "toy", toy._replace(run=mended))
     table = sweep(UNLUCKY, tmp_path / "out", workers=1, retry_failed=True)
     assert table["error"].tolist() == ["", "", ""]
     assert table["by_charts.share"].tolist() == [1 / 12, 1 / 40, 1 / 40]
@@ -163,7 +163,7 @@ def test_a_full_disk_is_one_sentence_and_loses_nothing(
     counted: list[Conditions],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    toy = EXPERIMENTS["toy"]
+    toy = experiments()["toy"]
 
     def fill(conditions: Conditions) -> Any:
         if len(counted) == 2:
@@ -175,11 +175,11 @@ def test_a_full_disk_is_one_sentence_and_loses_nothing(
             raise full
         return toy.run(conditions)
 
-    monkeypatch.setitem(EXPERIMENTS, "toy", toy._replace(run=fill))
+    monkeypatch.setitem(experiments(), "toy", toy._replace(run=fill))
     with pytest.raises(CogmapError, match="no space left on a disk; all points that are finished are kept"):
         sweep(PLAN, tmp_path, workers=1)
     assert len(list((tmp_path / "points").iterdir())) == 2
-    monkeypatch.setitem(EXPERIMENTS, "toy", toy)
+    monkeypatch.setitem(experiments(), "toy", toy)
     assert (sweep(PLAN, tmp_path, workers=1)["error"] == "").all()
     assert len(counted) == 8
 
@@ -244,14 +244,14 @@ def test_the_command(run: Callable[..., tuple[str, str]], tmp_path: Path) -> Non
 def test_a_stranger_experiment_reaches_the_catalogue_of_a_worker(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    chosen: Experiment = EXPERIMENTS["toy"]
+    chosen: Experiment = experiments()["toy"]
 
     def forgetful(tasks: list[running.Task], workers: int | None) -> Any:
         assert workers == 1
-        del EXPERIMENTS["toy"]
+        del experiments()["toy"]
         for task in tasks:
             yield running.do(task)
 
     monkeypatch.setattr("cogmap.sweeps.sweeping.on_this_machine", forgetful)
     assert (sweep(PLAN, tmp_path, workers=1)["error"] == "").all()
-    assert EXPERIMENTS["toy"] is chosen
+    assert experiments()["toy"] is chosen

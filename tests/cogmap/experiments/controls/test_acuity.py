@@ -4,12 +4,12 @@ import pytest
 from arena import Arena
 from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.controls.acuity import explore_at_acuity
-from cogmap.experiments.registry import experiment
+from cogmap.experiments.registry import run_experiment
 
 
 def test_a_coarse_eye_has_large_pixels_on_the_same_walk() -> None:
     conditions = Conditions(Arena.load("furnished"), 60, seed=2)
-    fine, coarse = explore_at_acuity(conditions, 360), explore_at_acuity(conditions, 12)
+    fine, coarse = (explore_at_acuity(conditions, columns).walk for columns in (360, 12))
     np.testing.assert_array_equal(poses_of(fine), poses_of(coarse))
     assert fine.views.shape == (60, 60, 360, 3)
     assert coarse.views.shape == (60, 16, 96, 3)
@@ -17,14 +17,14 @@ def test_a_coarse_eye_has_large_pixels_on_the_same_walk() -> None:
     assert (np.ptp(blocks, axis=(2, 4)) == 0).all()
     means = np.asarray(fine.views).reshape(60, 2, 30, 12, 30, 3).mean(axis=(2, 4))
     assert np.abs(blocks[:, :, 0, :, 0] - means).mean() < 3
-    assert len(explore_at_acuity(conditions, 24, fresh=True)) == 60
+    assert explore_at_acuity(conditions, 24).fresh.views.shape == (60, 16, 96, 3)
 
 
 def test_every_eye_and_number_of_charts_is_a_case(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cogmap.experiments.controls.acuity.COLUMNS", (12, 90))
     monkeypatch.setattr("cogmap.experiments.controls.acuity.USUAL_COLUMNS", 90)
     monkeypatch.setattr("cogmap.experiments.controls.acuity.CHARTS", (0.125, 1.0))
-    result = experiment("acuity", views=1600, map={"place_cells": 60})
+    result = run_experiment("acuity", views=1600, map={"place_cells": 60})
     cases = result.tables["cases"].set_index(["columns", "charts"])
     assert sorted(cases.index) == [(12, 533), (90, 67), (90, 533)]
     blurred, coarse, usual = (cases.loc[case] for case in [(12, 533), (90, 67), (90, 533)])

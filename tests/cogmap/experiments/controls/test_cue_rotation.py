@@ -5,7 +5,7 @@ from arena import Arena, Camera
 from cogmap.cells import rate_maps
 from cogmap.errors import CogmapError
 from cogmap.experiments.controls.cue_rotation import square_room, turned
-from cogmap.experiments.registry import experiment
+from cogmap.experiments.registry import run_experiment
 
 
 def test_what_is_seen_turns_with_the_walls_and_what_is_smelt_does_not() -> None:
@@ -32,7 +32,7 @@ def test_maps_turn_counter_clockwise() -> None:
 
 
 def test_sight_follows_the_walls_and_smell_stays() -> None:
-    metrics = experiment("cue_rotation", views=3000).metrics
+    metrics = run_experiment("cue_rotation", views=3000).metrics
     assert metrics["place_follows_walls_light"] > 0.95
     assert metrics["place_follows_walls_dark"] < 0.05
     assert metrics["heading_follows_walls"] > 0.95

@@ -1,8 +1,8 @@
-from cogmap.experiments.registry import experiment
+from cogmap.experiments.registry import run_experiment
 
 
 def test_the_same_cells_tell_the_same_place_by_either_sense() -> None:
-    result = experiment("darkness", views=1600)
+    result = run_experiment("darkness", views=1600)
     sight, smell = result.metrics["sight"], result.metrics["smell"]
     assert result.metrics["map_correlation"] > 0.5
     assert sight["place_cells_passing"] > 0.5

@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 
 from cogmap.experiments.controls.development_and_lesions import LEAST, SEEN, SILENT, _agreement, _mature
-from cogmap.experiments.registry import experiment
+from cogmap.experiments.registry import run_experiment
 from cogmap.experiments.result import Result
 
 VIEWS = 1600
@@ -11,7 +11,7 @@ VIEWS = 1600
 
 @pytest.fixture(scope="module")
 def result() -> Result:
-    return experiment("development", views=VIEWS)
+    return run_experiment("development", views=VIEWS)
 
 
 def test_cells_grow_with_experience(result: Result) -> None:

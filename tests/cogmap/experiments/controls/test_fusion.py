@@ -2,13 +2,13 @@ from typing import Any
 
 import pytest
 
-from cogmap.experiments.registry import experiment
+from cogmap.experiments.registry import run_experiment
 from cogmap.experiments.result import Result
 
 
 @pytest.fixture(scope="module")
 def result() -> Result:
-    return experiment("fusion", views=5000)
+    return run_experiment("fusion", views=5000)
 
 
 @pytest.fixture(scope="module")

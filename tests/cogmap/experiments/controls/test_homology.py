@@ -7,7 +7,7 @@ import pytest
 from arena import Arena, Disc
 from cogmap.experiments.controls import homology as module
 from cogmap.experiments.controls.homology import Case, expected_numbers
-from cogmap.experiments.registry import EXPERIMENTS, experiment
+from cogmap.experiments.registry import experiments, run_experiment
 from cogmap.map.activity import Activity
 from cogmap.shape import Betti, Nerve
 
@@ -38,7 +38,7 @@ def test_a_pillar_is_a_hole_and_turning_a_circle(name: str) -> None:
 
 
 def test_rooms_visited_unless_told_are_those_whose_holes_are_known() -> None:
-    homology = EXPERIMENTS["homology"]
+    homology = experiments()["homology"]
     assert {homology.room, *homology.extra_rooms} == HOLES.keys() - {"two_rooms"}
 
 
@@ -100,7 +100,7 @@ def test_it_writes_right_and_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
     monkeypatch.setattr(module, "homologies", fake)
     monkeypatch.setattr(module, "population_nerve", lambda rates: Nerve((1, 1), (rates.shape[1], 2, 1)))
-    result = experiment("homology", tmp_path / "out", room=Arena.load("pillar"), views=300, seed=2)
+    result = run_experiment("homology", tmp_path / "out", room=Arena.load("pillar"), views=300, seed=2)
     (activity,) = asked
     assert len(activity) == 300
     assert result.metrics["arena"] == "pillar"
@@ -134,7 +134,7 @@ def test_unless_told_it_visits_all_its_rooms(monkeypatch: pytest.MonkeyPatch) ->
         return [Case(conditions.room.name, "heading", (1, 1), found((1, 1, 0)), nerve)]
 
     monkeypatch.setattr(module, "_visit", fake)
-    metrics = experiment("homology").metrics
+    metrics = run_experiment("homology").metrics
     assert metrics["arena"] == "open_field, furnished, pillar, two_pillars, l_shape"
     assert ", ".join(metrics["rooms"]) == metrics["arena"]
     assert metrics["right"] == metrics["cases"] == metrics["nerve_right"] == metrics["nerve_cases"] == 5

@@ -1,7 +1,7 @@
 import pytest
 
 from cogmap.experiments.controls.slow_feature_comparison import WALKS
-from cogmap.experiments.registry import experiment
+from cogmap.experiments.registry import run_experiment
 
 
 def test_each_walk_is_learnt_both_ways_even_where_there_is_no_compass(
@@ -10,7 +10,7 @@ def test_each_walk_is_learnt_both_ways_even_where_there_is_no_compass(
     monkeypatch.setattr(
         "cogmap.experiments.controls.slow_feature_comparison.WALKS", {"corridor": WALKS["corridor"]}
     )
-    result = experiment("slow_features", views=300)
+    result = run_experiment("slow_features", views=300)
     corridor = result.metrics["corridor"]
     assert corridor.keys() == {"slow_features", "fused"}
     assert not corridor["fused"]["trusted"]

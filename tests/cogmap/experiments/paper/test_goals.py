@@ -4,7 +4,7 @@ import pandas as pd
 from arena import Arena
 from cogmap.cells import fit_heading_frame, heading_errors
 from cogmap.experiments.paper.goals import goal_grid, ring_distances, spread_orientation
-from cogmap.experiments.registry import experiment
+from cogmap.experiments.registry import run_experiment
 from cogmap.plots import plot_goals
 
 
@@ -37,7 +37,7 @@ def test_goals_lie_where_the_body_can_go() -> None:
 
 
 def test_rings_at_goals_are_place_cells() -> None:
-    result = experiment("goals", views=3000)
+    result = run_experiment("goals", views=3000)
     metrics = result.metrics
     assert metrics["goals"] == 12
     assert metrics["ring_betti"] == [1, 1]

@@ -7,8 +7,8 @@ import pandas as pd
 import pytest
 
 from cogmap import CogmapError
+from cogmap.experiments.registry import experiments
 from cogmap.experiments.result import Result
-from cogmap.pages.report.captions import CAPTIONS, caption
 from cogmap.pages.report.contents import LONGEST, read_contents
 from cogmap.plots.style import new_figure
 
@@ -26,7 +26,9 @@ def folder(tmp_path: Path) -> Path:
         "error_deg": 1.23456,
         "s": {"a": 1},
     }
-    Result(metrics, {"errors": table}, {"walk": figure, "odd_one": figure}).write(tmp_path)
+    Result(metrics, {"errors": table}, {"walk": figure, "odd_one": figure}, {"walk": "The way"}).write(
+        tmp_path
+    )
     return tmp_path
 
 
@@ -38,6 +40,7 @@ def test_an_experiment(folder: Path) -> None:
     (folder / "arena.toml").write_text("walls = []", "utf-8")
     found = read_contents(folder)
     assert found.title == "Cyclic in pillar"
+    assert found.summary == experiments()["cyclic"].summary
     assert found.parameters == [
         ("experiment", "cyclic", ""), ("arena", "pillar", ""), ("views", "9", ""), ("seed", "4", ""),
         ("nose", "Nose()", ""),
@@ -45,7 +48,7 @@ def test_an_experiment(folder: Path) -> None:
     assert found.figures == [("error_deg", "1.235", "°"), ("s.a", "1", "")]
     assert [(one.name, one.caption, one.width, one.height) for one in found.pictures] == [
         ("odd_one", "Odd one", 220, 110),
-        ("walk", CAPTIONS["walk"], 220, 110),
+        ("walk", "The way", 220, 110),
     ]
     data = base64.b64decode(found.pictures[1].uri.removeprefix("data:image/png;base64,"))
     assert data == (folder / "walk.png").read_bytes()
@@ -111,8 +114,3 @@ def test_what_is_no_result(tmp_path: Path) -> None:
     for path in (tmp_path, tmp_path / "absent", tmp_path / "diary.txt"):
         with pytest.raises(CogmapError, match="is not the result of a demo, an experiment or a sweep"):
             read_contents(path)
-
-
-def test_every_picture_has_words() -> None:
-    assert caption("mean_rate") == "Mean rate"
-    assert all(text and not text.endswith(".") for text in CAPTIONS.values())

@@ -1,0 +1,93 @@
+"""Trial of a map: a walk to learn from, a fresh walk, what the map makes of both, and the truth about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+
+from arena import Brownian, Camera, Disc, Motion, Recording
+from cogmap.evaluation.ground_truth import CellMetrics, GroundTruth
+from cogmap.evaluation.populations import grow_map, perceive, reachable_places
+from cogmap.evaluation.scoring import score
+from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.map.activity import Activity
+from cogmap.map.cognitive_map import CognitiveMap
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """What is learnt from one walk and measured on another; each part is worked out when first asked for.
+
+    `dataclasses.replace` changes one thing, another nose or other parameters of the map, and keeps the walks.
+    """
+
+    conditions: Conditions
+    walk: Recording
+    fresh: Recording
+    reachable: Float[np.ndarray, "points 2"] | None = None
+    """Places that count as within reach, m; those of the walk that is learnt from when None."""
+
+    @classmethod
+    def of(
+        cls, conditions: Conditions, motion: Motion | None = None, *, camera: Camera | None = None
+    ) -> Trial:
+        """Walk twice, brownian and with a panoramic camera unless told; all of the room is within reach."""
+        motion, camera = motion or Brownian(), camera or Camera.panoramic()
+        return cls(
+            conditions,
+            conditions.explore(motion, camera),
+            conditions.explore(motion, camera, fresh=True),
+            reachable_places(conditions.room, conditions.body or Disc()),
+        )
+
+    @cached_property
+    def truth(self) -> GroundTruth:
+        """Where both walks really led."""
+        train = poses_of(self.walk)
+        reachable = train[:, :2] if self.reachable is None else self.reachable
+        return GroundTruth(train, poses_of(self.fresh), reachable)
+
+    @cached_property
+    def cmap(self) -> CognitiveMap:
+        """The map that is learnt from the walk."""
+        conditions = self.conditions
+        return grow_map(self.walk, conditions.map, seed=conditions.seed, progress=conditions.progress)
+
+    @cached_property
+    def codes(self) -> tuple[Float[np.ndarray, "train components"], Float[np.ndarray, "views components"]]:
+        """Sanger codes of the views of both walks."""
+        return self.cmap.encode(self.walk.views), self.cmap.encode(self.fresh.views)
+
+    @cached_property
+    def train(self) -> Activity:
+        """What the views that were learnt from evoke."""
+        return perceive(self.cmap, self.walk.views)
+
+    @cached_property
+    def test(self) -> Activity:
+        """What the fresh views evoke."""
+        return perceive(self.cmap, self.fresh.views)
+
+    @cached_property
+    def place(self) -> CellMetrics:
+        """The place cells, on the fresh views."""
+        return self.truth.measure(self.test.place)
+
+    @cached_property
+    def heading(self) -> CellMetrics:
+        """The head-direction cells, on the fresh views."""
+        return self.truth.measure(self.test.heading)
+
+    @cached_property
+    def score(self) -> dict[str, float]:
+        """Every figure of `cogmap.score`; without `reachable` all that was walked counts as within reach."""
+        return score(
+            self.test,
+            self.truth.poses,
+            train=(self.train, self.truth.train),
+            reachable=self.reachable,
+            cells=(self.place, self.heading),
+        )

@@ -1,0 +1,56 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from arena import Arena, Camera, Disc, Rotation
+from cogmap.evaluation.scoring import score
+from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.trial import Trial
+
+CONDITIONS = Conditions(Arena.load("furnished"), 1200, seed=1)
+
+
+@pytest.fixture(scope="module")
+def trial() -> Trial:
+    return Trial.of(CONDITIONS, camera=Camera.panoramic(90, 15))
+
+
+def test_it_is_two_walks_a_map_and_the_truth(trial: Trial) -> None:
+    assert len(trial.walk) == len(trial.fresh) == 1200
+    assert not np.array_equal(poses_of(trial.walk), poses_of(trial.fresh))
+    np.testing.assert_array_equal(trial.truth.train, poses_of(trial.walk))
+    np.testing.assert_array_equal(trial.truth.poses, poses_of(trial.fresh))
+    assert (trial.cmap.charts, trial.cmap.seed) == (400, 1)
+    np.testing.assert_array_equal(trial.codes[1], trial.cmap.encode(trial.fresh.views))
+    assert trial.place.rates.shape == trial.test.place.shape
+    assert trial.cmap is trial.cmap
+
+
+def test_its_score_is_that_of_what_is_perceived(trial: Trial) -> None:
+    plain = score(
+        trial.test,
+        trial.truth.poses,
+        train=(trial.train, trial.truth.train),
+        reachable=trial.truth.reachable,
+    )
+    assert trial.score == plain
+    walked = replace(trial, reachable=None)
+    np.testing.assert_array_equal(walked.truth.reachable, trial.truth.train[:, :2])
+    assert walked.score == score(trial.test, trial.truth.poses, train=(trial.train, trial.truth.train))
+
+
+def test_another_nose_is_another_map_of_the_same_walks(trial: Trial) -> None:
+    other = replace(trial, conditions=replace(CONDITIONS, map={"charts": 50, "place_cells": 20}))
+    assert other.walk is trial.walk
+    assert other.cmap.charts == 50
+    assert other.place.rates.shape[1] == 20
+
+
+def test_conditions_go_before_what_it_is_told() -> None:
+    small = Trial.of(replace(CONDITIONS, views=60, body=Disc(radius=0.05), camera=Camera.panoramic(12, 2)))
+    assert small.walk.views.shape == (60, 2, 12, 3)
+    usual = Trial.of(replace(CONDITIONS, views=60), Rotation(), camera=Camera.panoramic(12, 2))
+    assert small.walk.attributes["body"]["radius"] == 0.05
+    assert np.ptp(small.truth.reachable, axis=0).min() > np.ptp(usual.truth.reachable, axis=0).min() + 0.2
+    assert np.ptp(poses_of(usual.walk)[:, :2]) < np.ptp(poses_of(small.walk)[:, :2])
