@@ -1,7 +1,7 @@
 """The cognitive map, its uses and its measures."""
 
 from cogmap import cells, features, graph, navigation, plots, shape
-from cogmap.errors import CogmapError
+from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.evaluation.scoring import score
 from cogmap.features import BagOfWords
 from cogmap.map.activity import Activity
@@ -19,6 +19,7 @@ __all__ = [
     "LandmarkIsomap",
     "Localiser",
     "Plan",
+    "UntrustedMapWarning",
     "VisualRoadmap",
     "betti",
     "cells",

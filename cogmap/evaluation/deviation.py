@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float
 
+from arena.angles import wrap_angle
 from cogmap.evaluation.pose_agreement import METRES_PER_RADIAN
 from cogmap.inputs import check_array
 
@@ -45,11 +46,11 @@ def path_deviation(path: Float[np.ndarray, "steps 3"]) -> Deviation:
     gone = np.insert(np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)), 0, 0.0)
     sampled = np.column_stack([np.interp(np.linspace(0, gone[-1], STEPS), gone, part) for part in points.T])
     straight = points[-1] - points[0]
-    straight[2:] = _short_way(straight[2:])
+    straight[2] = METRES_PER_RADIAN * wrap_angle(straight[2] / METRES_PER_RADIAN)
     length = straight @ straight
     share = np.clip((sampled - points[0]) @ straight / length, 0, 1) if length else np.zeros(STEPS)
     away = sampled - points[0] - share[:, None] * straight
-    away[:, 2] = _short_way(away[:, 2])
+    away[:, 2] = METRES_PER_RADIAN * wrap_angle(away[:, 2] / METRES_PER_RADIAN)
     distance = np.linalg.norm(away, axis=1)
     return Deviation(float(distance.mean()), float(distance.var()), float(distance.max()))
 
@@ -57,9 +58,3 @@ def path_deviation(path: Float[np.ndarray, "steps 3"]) -> Deviation:
 def path_length(path: Float[np.ndarray, "steps 3"]) -> float:
     """Give the length of a path in the plane, m."""
     return float(np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1).sum())
-
-
-def _short_way(turn: np.ndarray) -> np.ndarray:
-    half = np.pi * METRES_PER_RADIAN
-    wrapped: np.ndarray = half - (half - turn) % (2 * half)
-    return wrapped

@@ -25,6 +25,7 @@ from cogmap.cells import (
     tuning_curves,
 )
 from cogmap.cells.measures.correlations import correlations
+from cogmap.errors import UntrustedMapWarning
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import BATCH, CognitiveMap
 from cogmap.threads import one_thread
@@ -48,7 +49,7 @@ def grow_map(walk: Recording, parameters: Mapping[str, Any], *, seed: int) -> Co
 def perceive(cmap: CognitiveMap, views: Any) -> Activity:
     """Let a map look; one that is not to be trusted says so in the metrics, not in a warning."""
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="this map is not to be trusted")
+        warnings.simplefilter("ignore", UntrustedMapWarning)
         return cmap.perceive(views)
 
 

@@ -4,6 +4,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from neurons.angles import wrap_angle
 from neurons.layers.afferents import Afferents
 from neurons.layers.place_cells import PEAK
 
@@ -39,18 +40,14 @@ class HeadDirectionCells(nn.Module):
 
     def compete(self, headings: Float[Tensor, "views"], *, window: float) -> None:
         """Learn from a batch of headings (rad); `window` is in views."""
-        apart = _wrapped(headings[:, None] - self.preferred)
+        apart = wrap_angle(headings[:, None] - self.preferred)
         unit = apart.abs().topk(min(WINNERS, len(self.preferred)), dim=1, largest=False).indices
         flat = unit.flatten()
         self.responsibility *= max(0.0, 1 - len(headings) / window)
         self.responsibility.index_add_(0, flat, torch.ones(len(flat)))
         pull = torch.zeros_like(self.responsibility).index_add_(0, flat, apart.gather(1, unit).flatten())
-        self.preferred = _wrapped(self.preferred + pull / self.responsibility.clamp(min=1e-6))
+        self.preferred = wrap_angle(self.preferred + pull / self.responsibility.clamp(min=1e-6))
 
     def tuning(self, headings: Float[Tensor, "views"]) -> Float[Tensor, "views cells"]:
         """Rates in Hz that a heading demands."""
         return PEAK * torch.exp(CONCENTRATION * (torch.cos(headings[:, None] - self.preferred) - 1))
-
-
-def _wrapped(angle: Float[Tensor, "*shape"]) -> Float[Tensor, "*shape"]:
-    return torch.remainder(angle + torch.pi, 2 * torch.pi) - torch.pi

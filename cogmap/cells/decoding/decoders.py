@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Complex, Float
 from sklearn.neighbors import KNeighborsRegressor
 
+from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
 
@@ -132,8 +133,7 @@ def heading_errors(
     check_array("phase", phase, (None,))
     check_array("headings", headings, (len(phase),))
     sign = -1 if frame.mirror else 1
-    error: np.ndarray = np.angle(np.exp(1j * (sign * phase.astype(float) + frame.rotation - headings)))
-    return error
+    return wrap_angle(sign * phase.astype(float) + frame.rotation - headings)
 
 
 class MapFrame(NamedTuple):

@@ -12,6 +12,7 @@ from sklearn.linear_model import Ridge
 from sklearn.metrics import pairwise_distances_argmin
 
 from arena import Brownian, Camera
+from arena.angles import wrap_angle
 from cogmap.cells.measures.correlations import correlations
 from cogmap.evaluation.populations import GroundTruth, as_one_table, grow_map, perceive, trust_report
 from cogmap.experiments.conditions import Conditions, poses_of
@@ -142,7 +143,7 @@ def _figures(truth: GroundTruth, seen: Seen) -> dict[str, float]:
     place, heading = (truth.measure(rates) for rates in seen.test)
     train, test = (np.nan_to_num(batch.heading).astype(float) for batch in seen)
     cosine, sine = Ridge(alpha=1.0).fit(train, _on_circle(truth.train[:, 2])).predict(test).T
-    turned = np.angle(np.exp(1j * (np.arctan2(sine, cosine) - truth.poses[:, 2])))
+    turned = wrap_angle(np.arctan2(sine, cosine) - truth.poses[:, 2])
     return {
         "place_cells_passing": place.place_figures["place_cells_passing"],
         "place_coverage": place.place_coverage,

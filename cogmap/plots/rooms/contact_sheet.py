@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.figure import Figure
 
+from arena.angles import wrap_angle
 from arena.bodies.disc import Disc
 from arena.eye.camera import Camera
 from arena.rooms.arena import Arena
@@ -49,5 +50,5 @@ def plot_sheet(arena: Arena) -> Figure:
 def _spread(arena: Arena) -> Float[np.ndarray, "views 3"]:
     xy = arena.sample_free(CANDIDATES, Disc().radius, np.random.default_rng(0))
     taken = farthest_points(euclidean(xy), VIEWS, 0).indices
-    headings = (GOLDEN * np.arange(len(taken)) + np.pi) % (2 * np.pi) - np.pi
+    headings = wrap_angle(GOLDEN * np.arange(len(taken)))
     return np.column_stack([xy[taken], headings])

@@ -1,8 +1,11 @@
+import warnings
+
 import numpy as np
 import pytest
 
 from arena import Arena, Brownian, Camera, explore
-from cogmap.evaluation.populations import GroundTruth, as_one_table, competing_cells, grow_map
+from cogmap import Activity, CognitiveMap, UntrustedMapWarning
+from cogmap.evaluation.populations import GroundTruth, as_one_table, competing_cells, grow_map, perceive
 
 
 @pytest.fixture(scope="module")
@@ -63,3 +66,23 @@ def test_a_map_is_grown_as_told() -> None:
     other = grow_map(walk, {"charts": 30, "place_cells": 20}, seed=3)
     assert (other.charts, other.seed) == (30, 3)
     assert other.perceive(odours=walk.odours).place.shape == (120, 20)
+
+
+@pytest.mark.parametrize("warning", [UntrustedMapWarning, UserWarning])
+def test_only_a_map_that_is_not_trusted_is_left_to_the_metrics(
+    monkeypatch: pytest.MonkeyPatch, warning: type[Warning]
+) -> None:
+    def look(*_: object) -> Activity:
+        warnings.warn("this map is not to be trusted", warning, stacklevel=1)
+        return Activity(
+            *(np.zeros((1, 2), np.float32) for _ in range(2)),
+            np.zeros(1, np.float32),
+            *(np.zeros((1, 2), np.float32) for _ in range(2)),
+        )
+
+    monkeypatch.setattr(CognitiveMap, "perceive", look)
+    if warning is UserWarning:
+        with pytest.warns(UserWarning, match="trusted"):
+            perceive(CognitiveMap(), None)
+    else:
+        perceive(CognitiveMap(), None)
