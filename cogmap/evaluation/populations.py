@@ -32,8 +32,6 @@ from cogmap.threads import one_thread
 from neurons.layers.place_cells import PlaceCells
 from neurons.network import EPOCHS
 
-CELLS = 150
-"""In a population that competes for something; as many as a map has place cells."""
 MOST_CHARTS = 3000
 
 
@@ -62,9 +60,9 @@ def competing_cells(
     train: Float[np.ndarray, "train inputs"],
     *test: Float[np.ndarray, "_ inputs"],
     seed: int,
-    cells: int = CELLS,
+    cells: int = 150,
 ) -> list[Float[np.ndarray, "_ cells"]]:
-    """Let the place cells' layer compete for any inputs, as long as in a map, and give its rates in Hz."""
+    """Let the place cells' layer compete for any inputs, as many and as long as in a map; rates in Hz."""
     inputs = torch.from_numpy(np.asarray(train, np.float32))
     order = np.random.default_rng(seed)
     layer = PlaceCells(cells, 1, inputs.shape[1])

@@ -12,15 +12,15 @@ from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
 
-NEIGHBOURS = 4
-
 
 def decode_positions(
     train_odours: Float[np.ndarray, "train odorants"],
     train_positions: Float[np.ndarray, "train 2"],
     odours: Float[np.ndarray, "views odorants"],
+    *,
+    neighbours: int = 4,
 ) -> Float[np.ndarray, "views 2"]:
-    """Position in m by 4-nearest-neighbour regression on log odour, weights 1/distance.
+    """Position in m by nearest-neighbour regression on log odour, weights 1/distance.
 
     Parameters
     ----------
@@ -30,18 +30,20 @@ def decode_positions(
         Where those views were taken in m, (train, 2).
     odours
         Log concentrations to decode, (views, odorants).
+    neighbours
+        How many training views a position is averaged over.
 
     Raises
     ------
     CogmapError
-        For values that are not finite, shapes that do not fit, fewer than four training views.
+        For values that are not finite, shapes that do not fit, fewer training views than neighbours.
     """
     check_array("train_odours", train_odours, (None, None))
     check_array("train_positions", train_positions, (len(train_odours), 2))
     check_array("odours", odours, (None, train_odours.shape[1]))
-    if len(train_odours) < NEIGHBOURS:
-        raise CogmapError(f"{len(train_odours)} training views; give at least {NEIGHBOURS}")
-    decoder = KNeighborsRegressor(n_neighbors=NEIGHBOURS, weights="distance", algorithm="kd_tree")
+    if len(train_odours) < neighbours:
+        raise CogmapError(f"{len(train_odours)} training views; give at least {neighbours}")
+    decoder = KNeighborsRegressor(n_neighbors=neighbours, weights="distance", algorithm="kd_tree")
     decoder.fit(train_odours.astype(float), train_positions.astype(float))
     decoded: np.ndarray = decoder.predict(odours.astype(float))
     return decoded

@@ -8,8 +8,6 @@ from jaxtyping import Float, Int
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_samples
 
-PEAK = 20.0
-"""Highest rate of a cell that spikes, Hz."""
 SECONDS = 0.3
 """How long a view lasts: about what a brownian walk takes from one to the next."""
 
@@ -18,7 +16,7 @@ def poisson_spikes(
     rates: Float[np.ndarray, "views cells"],
     rng: np.random.Generator,
     *,
-    peak: float | None = PEAK,
+    peak: float | None = 20.0,
     seconds: float = SECONDS,
 ) -> Int[np.ndarray, "views cells"]:
     """Draw how often each cell spikes in each view, n ~ Poisson(λ T), independent of one another.
