@@ -65,12 +65,7 @@ def quasi_metric(
         "motion_m": motion[joined],
         "geodesic": geodesic[joined],
     }
-    places = {
-        "x_m": poses[starts, 0],
-        "y_m": poses[starts, 1],
-        "heading_rad": poses[starts, 2],
-        "distortion": distortion,
-    }
+    places = pd.DataFrame(poses[starts], columns=["x_m", "y_m", "heading_rad"]).assign(distortion=distortion)
     low, high = np.percentile(distortion, [5, 95])
     metrics = {
         "geodesic_rank_correlation": float(spearmanr(motion[joined], geodesic[joined]).statistic),
@@ -78,4 +73,4 @@ def quasi_metric(
         "distortion_p95": float(high),
         "joined_pairs": float(joined.mean()),
     }
-    return QuasiMetric(pd.DataFrame(pairs), pd.DataFrame(places), metrics)
+    return QuasiMetric(pd.DataFrame(pairs), places, metrics)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
-
 import numpy as np
 from jaxtyping import Float
 from sklearn.metrics import r2_score
@@ -21,38 +19,14 @@ from cogmap.cells.measures.place import place_statistics
 from cogmap.cells.rates.bins import bin_edges
 from cogmap.cells.rates.maps import RateMaps, rate_maps
 from cogmap.inputs import check_array
-
-
-@runtime_checkable
-class Perceived(Protocol):
-    """What `score` reads of the activity that views evoke."""
-
-    @property
-    def place(self) -> Float[np.ndarray, "views place_cells"]:
-        """Rates in Hz."""
-
-    @property
-    def heading(self) -> Float[np.ndarray, "views heading_cells"]:
-        """Rates in Hz."""
-
-    @property
-    def phase(self) -> Float[np.ndarray, "views"]:
-        """Heading in the map's own frame, rad."""
-
-    @property
-    def odour(self) -> Float[np.ndarray, "views odorants"]:
-        """Log concentration recalled."""
-
-    @property
-    def position(self) -> Float[np.ndarray, "views 2"]:
-        """In the map's own metric frame; NaN without one."""
+from cogmap.map.activity import Activity
 
 
 def score(
-    activity: Perceived,
+    activity: Activity,
     poses: Float[np.ndarray, "views 3"],
     *,
-    train: tuple[Perceived, Float[np.ndarray, "train 3"]],
+    train: tuple[Activity, Float[np.ndarray, "train 3"]],
     reachable: Float[np.ndarray, "points 2"] | None = None,
 ) -> dict[str, float]:
     """Every figure that activity gives, as one flat record.
@@ -109,9 +83,9 @@ def score(
 
 
 def _score_heading(
-    activity: Perceived,
+    activity: Activity,
     poses: Float[np.ndarray, "views 3"],
-    train: tuple[Perceived, Float[np.ndarray, "train 3"]],
+    train: tuple[Activity, Float[np.ndarray, "train 3"]],
     place_maps: RateMaps,
 ) -> dict[str, float]:
     """Errors and cells; without a compass no cell passes, and there is no heading to be wrong."""

@@ -30,9 +30,9 @@ def with_state(cmap: CognitiveMap, changed: Mapping[str, Tensor]) -> CognitiveMa
 
 def with_blank_afferents(cmap: CognitiveMap) -> CognitiveMap:
     """Copy a map whose cells hear nothing yet: their afferents from sight are as before any view."""
-    weights = weights_of(cmap)
+    learnt = cmap.state_dict()
     return with_state(
-        cmap, {name: torch.zeros_like(weights[name]) for name in weights if ".afferents." in name}
+        cmap, {name: torch.zeros_like(learnt[name]) for name in learnt if ".afferents." in name}
     )
 
 

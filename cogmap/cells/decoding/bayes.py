@@ -58,5 +58,4 @@ def poisson_posterior(
         if prior.min() < 0 or prior.max() <= 0:
             raise CogmapError("prior is negative or nowhere positive; give a probability to every bin")
         likelihood += special.xlogy(1, prior)
-    posterior: np.ndarray = special.softmax(likelihood, axis=1)
-    return posterior
+    return np.asarray(special.softmax(likelihood, axis=1))

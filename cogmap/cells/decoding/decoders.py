@@ -45,8 +45,7 @@ def decode_positions(
         raise CogmapError(f"{len(train_odours)} training views; give at least {neighbours}")
     decoder = KNeighborsRegressor(n_neighbors=neighbours, weights="distance", algorithm="kd_tree")
     decoder.fit(train_odours.astype(float), train_positions.astype(float))
-    decoded: np.ndarray = decoder.predict(odours.astype(float))
-    return decoded
+    return np.asarray(decoder.predict(odours.astype(float)))
 
 
 def position_errors(
@@ -65,10 +64,8 @@ def position_errors(
         For values that are not finite, shapes that do not fit, fewer than four training views.
     """
     check_array("positions", positions, (len(odours), 2))
-    missed: np.ndarray = np.linalg.norm(
-        decode_positions(train_odours, train_positions, odours) - positions, axis=1
-    )
-    return missed
+    missed = decode_positions(train_odours, train_positions, odours) - positions
+    return np.asarray(np.linalg.norm(missed, axis=1))
 
 
 def likeliest(
@@ -186,5 +183,4 @@ def place_map(mapped: Float[np.ndarray, "views 2"], frame: MapFrame) -> Float[np
 
 
 def _complex(points: Float[np.ndarray, "points 2"]) -> Complex[np.ndarray, "points"]:
-    combined: np.ndarray = points.astype(float) @ np.array([1, 1j])
-    return combined
+    return np.asarray(points.astype(float) @ np.array([1, 1j]))

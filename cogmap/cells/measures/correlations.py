@@ -17,8 +17,7 @@ def correlations(
     """
     known = ~(np.isnan(one) | np.isnan(other))
     a, b = (standardised(np.where(known, rows, np.nan)) for rows in (one, other))
-    products: np.ndarray = np.sum(a * b, axis=1)
-    return products
+    return np.asarray(np.sum(a * b, axis=1))
 
 
 def standardised(rows: Float[np.ndarray, "rows samples"]) -> Float[np.ndarray, "rows samples"]:

@@ -107,5 +107,4 @@ def _in_field_vectors(
     place = maps.edges.bin_of(positions)
     inside = fields.masks.reshape(len(maps), -1)[:, place].T & (place >= 0)[:, None]
     curves = means_by_bin(heading_bin(headings, bins), bins, rates, inside)
-    length: np.ndarray = np.abs(mean_vectors(curves.T))
-    return length
+    return np.asarray(np.abs(mean_vectors(curves.T)))

@@ -44,8 +44,7 @@ def poisson_spikes(
             raise CogmapError(f"peak is {peak} Hz; give a positive rate, or None to leave the rates alone")
         highest = rates.max(axis=0)
         rates = rates * (peak / np.where(highest > 0, highest, peak))
-    counts: np.ndarray = rng.poisson(rates.astype(float) * seconds)
-    return counts
+    return np.asarray(rng.poisson(rates.astype(float) * seconds))
 
 
 def check_seconds(seconds: float) -> None:
