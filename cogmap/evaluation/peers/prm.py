@@ -24,7 +24,7 @@ def prm_paths(
     radius: float,
     milestones: int,
     seed: int = 0,
-    patience: float = 600,
+    patience: float = 600.0,
 ) -> list[Float[np.ndarray, "_ 3"] | None] | None:
     """Plan in SE(2) with the arena's own collision check, on one roadmap for all queries.
 

@@ -42,4 +42,4 @@ def test_when_ompl_fails_or_takes_too_long_it_is_said(monkeypatch: pytest.Monkey
         prm_paths(ROOM, np.zeros((1, 2, 3)), radius=0.2, milestones=5)
     monkeypatch.setattr(subprocess, "run", dawdle)
     with pytest.raises(CogmapError, match="not done after 7 s"):
-        prm_paths(ROOM, np.zeros((1, 2, 3)), radius=0.2, milestones=5, patience=7)
+        prm_paths(ROOM, np.zeros((1, 2, 3)), radius=0.2, milestones=5, patience=7.0)

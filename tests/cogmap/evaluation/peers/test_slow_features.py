@@ -42,6 +42,6 @@ def test_cells_fire_seldom_and_strongly() -> None:
     assert few.rates.shape == (3000, 4)
     np.testing.assert_allclose(few.rates.max(axis=0), 10)
     (fewer,) = slow_cells(codes, codes, slow=1, seed=1)
-    assert fewer.rates.shape == (3000, 2)  # of x and x²
+    assert fewer.rates.shape == (3000, 1)
     (again,) = slow_cells(codes, codes, seed=1)
     np.testing.assert_array_equal(again.rates, learnt.rates)
