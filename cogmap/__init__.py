@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cogmap import cells, evaluation, features, graph, navigation, plots, shape, testing
-    from cogmap.errors import CogmapError, UnlikeArithmeticWarning
+    from cogmap.errors import CogmapError, UnlikeArithmeticWarning, UntrustedMapWarning
     from cogmap.evaluation.scoring import score
     from cogmap.features import BagOfWords
     from cogmap.map.activity import Activity
@@ -24,6 +24,7 @@ __all__ = [
     "Localiser",
     "Plan",
     "UnlikeArithmeticWarning",
+    "UntrustedMapWarning",
     "VisualRoadmap",
     "betti",
     "cells",
@@ -48,6 +49,7 @@ _HOMES = {
     "Localiser": "navigation",
     "Plan": "sweeps",
     "UnlikeArithmeticWarning": "errors",
+    "UntrustedMapWarning": "errors",
     "VisualRoadmap": "navigation",
     "betti": "shape",
     "score": "evaluation.scoring",

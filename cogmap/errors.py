@@ -1,4 +1,4 @@
-"""What `cogmap` raises when it is given something it cannot use."""
+"""Errors that `cogmap` raises when it is given something it cannot use, and its warnings."""
 
 
 class CogmapError(ValueError):
@@ -7,3 +7,7 @@ class CogmapError(ValueError):
 
 class UnlikeArithmeticWarning(UserWarning):
     """Results that stand beside each other were calculated by processors that round differently."""
+
+
+class UntrustedMapWarning(UserWarning):
+    """A map that its own diagnosis does not trust was asked what it perceives; the message says why."""

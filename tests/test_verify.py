@@ -70,7 +70,7 @@ def recordings(request: pytest.FixtureRequest) -> tuple[Recording, Recording]:
     )
 
 
-@pytest.mark.filterwarnings("ignore:this map is not to be trusted")
+@pytest.mark.filterwarnings("ignore::cogmap.UntrustedMapWarning")
 @pytest.mark.parametrize("charts", [100, 200, 300, 400, 500, 600, 700, 800, 900, 1000, 1500, 2000])
 def test_no_trusted_map_is_wrong(recordings: tuple[Recording, Recording], charts: int) -> None:
     learnt, fresh = recordings

@@ -7,6 +7,7 @@ import numpy as np
 import pymunk
 from pydantic import Field
 
+from arena.angles import wrap_angle
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
 from arena.settings import Settings
@@ -61,7 +62,7 @@ class Drive:
     def pose(self) -> Pose:
         """Where the body is, its heading in (−π, π]."""
         x, y = self._disc.position
-        return x, y, math.pi - (math.pi - self._heading) % (2 * math.pi)
+        return x, y, wrap_angle(self._heading)
 
     def step(self, speed: float, turn: float, dt: float) -> bool:
         """Move for dt (s), approaching a speed (m/s) and a turn rate (rad/s) as the body can.

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from arena.angles import signed_turn
 from arena.bodies.disc import Disc, Drive, Pose
 from arena.motions.base import Walk
 from arena.motions.locomotion import (
@@ -121,7 +122,7 @@ class Brownian(Settings):
                 away = drive.ahead(shy) if drive.contact is None else drive.contact
             if away is not None:
                 goal = away + math.asin(self.grazing * rng.uniform(-1, 1))
-                angle = math.remainder(goal - drive.pose[2], 2 * math.pi)
+                angle = signed_turn(drive.pose[2], goal)
             elif rng.random() < self.spin_probability:
                 angle = self.spin * rng.standard_normal()
             else:

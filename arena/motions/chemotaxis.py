@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import Field
 
+from arena.angles import signed_turn
 from arena.bodies.disc import Disc, Drive, Pose
 from arena.errors import ArenaError
 from arena.motions.base import Walk
@@ -118,7 +119,7 @@ class Chemotaxis(Settings):
         strength, gradient = self._smell(drive, odours)
         while stride > self.precision:
             x, y, heading = drive.pose
-            yield from turn_by(drive, math.remainder(gradient - heading, 2 * math.pi), turn_rate)
+            yield from turn_by(drive, signed_turn(heading, gradient), turn_rate)
             yield from _run(drive, stride, speed, slide=True)
             before, (strength, gradient) = strength, self._smell(drive, odours)
             if strength <= before or math.dist((x, y), drive.pose[:2]) < 0.02 * stride:
@@ -132,7 +133,7 @@ class Chemotaxis(Settings):
             yield from turn_by(drive, angle, turn_rate)
             left = yield from _run(drive, left, speed, slide=False)
             away = drive.pose[2] if drive.contact is None else drive.contact
-            angle = math.remainder(away + rng.uniform(-0.5, 0.5) * math.pi - drive.pose[2], 2 * math.pi)
+            angle = signed_turn(drive.pose[2], away + rng.uniform(-0.5, 0.5) * math.pi)
 
     def _smell(self, drive: Drive, odours: OdourField) -> tuple[float, float]:
         """Give the concentration at the nose, and the direction (rad) in which it rises."""

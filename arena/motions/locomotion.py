@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 from shapely.geometry.base import BaseGeometry
 
+from arena.angles import signed_turn
 from arena.bodies.disc import Disc, Drive, Pose
 from arena.errors import ArenaError
 from arena.motions.base import Walk
@@ -72,7 +73,7 @@ def turn_by(drive: Drive, angle: float, turn_rate: float) -> Iterator[StepLength
 def bearing(pose: Pose, goal: Point) -> float:
     """By how much to turn (rad, the short way) to face a goal (m)."""
     x, y, heading = pose
-    return math.remainder(math.atan2(goal[1] - y, goal[0] - x) - heading, 2 * math.pi)
+    return signed_turn(heading, math.atan2(goal[1] - y, goal[0] - x))
 
 
 def go_to(drive: Drive, goal: Point, speed: float) -> Iterator[StepLength]:

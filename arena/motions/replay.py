@@ -9,6 +9,7 @@ from jaxtyping import Float, Int
 from pydantic import Field, PlainSerializer, model_validator
 from shapely.geometry.base import BaseGeometry
 
+from arena.angles import wrap_angle
 from arena.bodies.disc import TOLERANCE, Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
@@ -100,7 +101,7 @@ class Replay(Settings):
         if views is not None and len(taken) < views:
             raise ArenaError(f"{self.path} gives {len(taken)} views, not {views}; ask for no more")
         positions, clipped = self._kept(arena, body, times, positions)
-        poses = np.column_stack([positions, np.pi - (np.pi - headings) % (2 * np.pi)])[taken]
+        poses = np.column_stack([positions, wrap_angle(headings)])[taken]
         return Walk(times[taken] - times[0], poses, {**notes, "clipped": clipped})
 
     def _placed(

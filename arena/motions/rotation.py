@@ -1,12 +1,12 @@
 """Rotation, a spin on the spot: all headings at one place."""
 
-import math
 from typing import Annotated, ClassVar
 
 import numpy as np
 import shapely
 from pydantic import Field
 
+from arena.angles import signed_turn
 from arena.bodies.disc import Disc
 from arena.motions.base import Walk
 from arena.motions.locomotion import STEP, Point, Positive, Share, free_space
@@ -66,7 +66,7 @@ class Rotation(Settings):
             while goal - turned > 1e-9:
                 before, dt = drive.pose[2], min(STEP, 1 / turn_rate, (goal - turned) / turn_rate)
                 drive.step(0.0, turn_rate, dt)
-                turned += math.remainder(drive.pose[2] - before, 2 * math.pi)
+                turned += signed_turn(before, drive.pose[2])
                 now += dt
             times[view], poses[view] = now, drive.pose
         return Walk(times, poses)

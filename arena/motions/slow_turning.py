@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from arena.angles import wrap_angle
 from arena.bodies.disc import Disc
 from arena.motions.base import Walk
 from arena.motions.brownian import Brownian
@@ -49,4 +50,4 @@ class SlowTurning(Settings):
         # Looking around takes no views of its own.
         way = Brownian(view_every_m=self.view_every_m, view_every_rad=100.0).walk(arena, body, views, rng)
         gaze = way.poses[0, 2] + np.cumsum(self.turn * rng.standard_normal(len(way.poses)))
-        return way._replace(poses=np.column_stack([way.poses[:, :2], np.pi - (np.pi - gaze) % (2 * np.pi)]))
+        return way._replace(poses=np.column_stack([way.poses[:, :2], wrap_angle(gaze)]))

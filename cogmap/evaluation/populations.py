@@ -11,6 +11,7 @@ import torch
 from jaxtyping import Float
 
 from arena import Arena, Disc, Recording
+from cogmap.errors import UntrustedMapWarning
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import BATCH, CognitiveMap
 from cogmap.threads import one_thread
@@ -37,7 +38,7 @@ def grow_map(
 def perceive(cmap: CognitiveMap, views: Any) -> Activity:
     """Let a map look; one that is not to be trusted says so in the metrics, not in a warning."""
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="this map is not to be trusted")
+        warnings.simplefilter("ignore", UntrustedMapWarning)
         return cmap.perceive(views)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float
 from scipy.spatial.distance import cdist
 
+from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array, checked_count
 
@@ -87,4 +88,4 @@ def pose_agreement(
 
 def _turns(queries: Float[np.ndarray, "queries 3"], poses: Float[np.ndarray, "views 3"]) -> Distances:
     """Angles between headings the short way round, rad."""
-    return np.asarray(np.abs(np.angle(np.exp(1j * (queries[:, None, 2] - poses[:, 2])))))
+    return np.asarray(np.abs(wrap_angle(queries[:, None, 2] - poses[:, 2])))

@@ -13,11 +13,6 @@ from scipy.stats import spearmanr
 
 from cogmap.evaluation.pose_agreement import motion_distances
 
-SOURCES = 300
-"""Views from which distances are measured."""
-TARGETS = 300
-"""Views to which they are measured, from each."""
-
 
 class QuasiMetric(NamedTuple):
     """Distances between pairs of views, and what they say by place."""
@@ -29,7 +24,14 @@ class QuasiMetric(NamedTuple):
     metrics: dict[str, Any]
 
 
-def quasi_metric(graph: sp.csr_array, poses: Float[np.ndarray, "views 3"], seed: int = 0) -> QuasiMetric:
+def quasi_metric(
+    graph: sp.csr_array,
+    poses: Float[np.ndarray, "views 3"],
+    seed: int = 0,
+    *,
+    sources: int = 300,
+    targets: int = 300,
+) -> QuasiMetric:
     """Compare shortest paths in a neighbour graph with how far apart the poses are.
 
     A body is as far from another pose as √(Δx² + Δy² + (0.5 m/rad · Δθ)²), obstacles aside. The distortion at
@@ -44,29 +46,26 @@ def quasi_metric(graph: sp.csr_array, poses: Float[np.ndarray, "views 3"], seed:
         Where the views were taken: m, m, rad.
     seed
         Draws the pairs.
+    sources, targets
+        Views from which, and to which, distances are measured; their product is the number of pairs.
     """
     rng = np.random.default_rng(seed)
     views = len(poses)
-    sources = rng.choice(views, min(SOURCES, views), replace=False)
-    targets = rng.choice(views, min(TARGETS, views), replace=False)
-    geodesic = dijkstra(graph, indices=sources)[:, targets]
-    motion = motion_distances(poses[sources], poses[targets])
+    starts = rng.choice(views, min(sources, views), replace=False)
+    ends = rng.choice(views, min(targets, views), replace=False)
+    geodesic = dijkstra(graph, indices=starts)[:, ends]
+    motion = motion_distances(poses[starts], poses[ends])
     joined = np.isfinite(geodesic) & (motion > 0)
     ratio = np.where(joined, geodesic / np.where(motion > 0, motion, 1), np.nan)
     distortion = np.nanmedian(ratio, axis=1) / np.nanmedian(ratio)
     rows, columns = np.nonzero(joined)
     pairs = {
-        "source": sources[rows],
-        "target": targets[columns],
+        "source": starts[rows],
+        "target": ends[columns],
         "motion_m": motion[joined],
         "geodesic": geodesic[joined],
     }
-    places = {
-        "x_m": poses[sources, 0],
-        "y_m": poses[sources, 1],
-        "heading_rad": poses[sources, 2],
-        "distortion": distortion,
-    }
+    places = pd.DataFrame(poses[starts], columns=["x_m", "y_m", "heading_rad"]).assign(distortion=distortion)
     low, high = np.percentile(distortion, [5, 95])
     metrics = {
         "geodesic_rank_correlation": float(spearmanr(motion[joined], geodesic[joined]).statistic),
@@ -74,4 +73,4 @@ def quasi_metric(graph: sp.csr_array, poses: Float[np.ndarray, "views 3"], seed:
         "distortion_p95": float(high),
         "joined_pairs": float(joined.mean()),
     }
-    return QuasiMetric(pd.DataFrame(pairs), pd.DataFrame(places), metrics)
+    return QuasiMetric(pd.DataFrame(pairs), places, metrics)

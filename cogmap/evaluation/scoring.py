@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
-
 import numpy as np
 from jaxtyping import Float
 from sklearn.metrics import r2_score
@@ -11,38 +9,14 @@ from sklearn.metrics import r2_score
 from cogmap.cells.decoding.decoders import fit_heading_frame, fit_map_frame, heading_errors, place_map
 from cogmap.evaluation.ground_truth import CellMetrics, GroundTruth
 from cogmap.inputs import check_array
-
-
-@runtime_checkable
-class Perceived(Protocol):
-    """What `score` reads of the activity that views evoke."""
-
-    @property
-    def place(self) -> Float[np.ndarray, "views place_cells"]:
-        """Rates in Hz."""
-
-    @property
-    def heading(self) -> Float[np.ndarray, "views heading_cells"]:
-        """Rates in Hz."""
-
-    @property
-    def phase(self) -> Float[np.ndarray, "views"]:
-        """Heading in the map's own frame, rad."""
-
-    @property
-    def odour(self) -> Float[np.ndarray, "views odorants"]:
-        """Log concentration recalled."""
-
-    @property
-    def position(self) -> Float[np.ndarray, "views 2"]:
-        """In the map's own metric frame; NaN without one."""
+from cogmap.map.activity import Activity
 
 
 def score(
-    activity: Perceived,
+    activity: Activity,
     poses: Float[np.ndarray, "views 3"],
     *,
-    train: tuple[Perceived, Float[np.ndarray, "train 3"]],
+    train: tuple[Activity, Float[np.ndarray, "train 3"]],
     reachable: Float[np.ndarray, "points 2"] | None = None,
     cells: tuple[CellMetrics, CellMetrics] | None = None,
 ) -> dict[str, float]:

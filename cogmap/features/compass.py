@@ -9,6 +9,7 @@ from scipy import fft
 from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 from scipy.sparse.linalg import cg
 
+from arena.angles import wrap_angle
 from cogmap.features.strips import FREQUENCIES, Strips
 
 COLUMNS = 2 * (FREQUENCIES - 1)
@@ -71,7 +72,7 @@ def _turns(
     unequal = np.square(flow - behind)
     weight = 1 / (unequal + 0.1 * np.median(unequal, axis=1, keepdims=True) + 1e-8)
     turn = coarse + (weight * (flow + behind) / 2).sum(axis=1) / weight.sum(axis=1)
-    return np.asarray(_wrapped(turn.astype(np.float64)))
+    return wrap_angle(turn.astype(np.float64))
 
 
 def _windowed(values: Float32[np.ndarray, "pairs columns"]) -> Float32[np.ndarray, "pairs columns"]:
@@ -122,14 +123,9 @@ def synchronise_headings(
     difference = sp.csr_array((signs, (np.tile(index, 2), edges.T.ravel())), (len(edges), views))
     trust = 1 / np.square(lengths + 0.1 * np.median(lengths))
     for _ in range(4):
-        left = _wrapped(turned - difference @ headings)
+        left = wrap_angle(turned - difference @ headings)
         weighted = difference.T @ sp.diags_array(trust / (1 + np.square(left / OUTLIER)))
         matrix = sp.csr_array(weighted @ difference)
         scale = sp.diags_array(1 / np.maximum(matrix.diagonal(), 1e-300))
         headings += cg(matrix, weighted @ left, rtol=1e-5, M=scale, maxiter=1000)[0]
-    return np.asarray(_wrapped(headings))
-
-
-def _wrapped(angles: np.ndarray) -> np.ndarray:
-    wrapped: np.ndarray = np.pi - (np.pi - angles) % (2 * np.pi)
-    return wrapped
+    return wrap_angle(headings)

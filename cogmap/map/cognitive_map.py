@@ -18,11 +18,12 @@ from numpy.typing import ArrayLike
 from torch import Tensor
 from tqdm import tqdm
 
-from cogmap.errors import CogmapError
+from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.inputs import check_views, checked_count, log_odours
 from cogmap.map.activity import Activity
 from cogmap.map.storage import read_map, write_map
 from cogmap.threads import one_thread
+from neurons.angles import mean_angle
 from neurons.errors import NeuronsError
 from neurons.layers.retina import Retina
 from neurons.merging import forked, merge
@@ -227,7 +228,9 @@ class CognitiveMap:
                 return self._smell(torch.from_numpy(log_odours(odours, odorants=self.odorants_)))
             check_views(views, self.view_shape_)
             if not self.trusted_:
-                warnings.warn(f"this map is not to be trusted: {self.reason_}", stacklevel=2)
+                warnings.warn(
+                    f"this map is not to be trusted: {self.reason_}", UntrustedMapWarning, stacklevel=2
+                )
             parts = [self._look(strip) for _, strip in self._strips(views)]
         return Activity(*(torch.cat(part).numpy() for part in zip(*parts, strict=True)))
 
@@ -261,6 +264,11 @@ class CognitiveMap:
         self._check_grown()
         return float(self._network.agreement[1])
 
+    def state_dict(self) -> dict[str, Tensor]:
+        """Give all that it has learnt, by the names it is saved under; as in PyTorch, not a copy."""
+        self._check_grown()
+        return self._network.state_dict()
+
     def save(self, path: str | Path) -> None:
         """Write the map to a new folder: `weights.safetensors` and `map.json`.
 
@@ -269,14 +277,14 @@ class CognitiveMap:
         CogmapError
             When something is at the path already, or it cannot be written.
         """
-        self._check_grown()
+        weights = self.state_dict()
         learnt = {
             "view_shape": self.view_shape_,
             "odorants": self.odorants_,
             "epoch": self._network.epoch,
             "charts": len(self._network.charts),
         }
-        write_map(Path(path), self._network.state_dict(), self._settings(), learnt)
+        write_map(Path(path), weights, self._settings(), learnt)
 
     @classmethod
     def load(cls, path: str | Path) -> CognitiveMap:
@@ -340,8 +348,8 @@ class CognitiveMap:
         network = self._network
         excited, heading, odour = network.recall(strips)
         position, offset = network.metric_map(network.place, odour)
-        angle = heading + offset
-        phase = torch.atan2(angle.sin(), angle.cos())
+        angle = (heading + offset)[:, None]
+        phase = mean_angle(angle, torch.ones_like(angle))
         return network.place.afferents(excited), network.heading.afferents(excited), phase, odour, position
 
     def _smell(self, odours: Float[Tensor, "views odorants"]) -> Activity:

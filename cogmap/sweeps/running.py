@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 from joblib import Parallel, delayed
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
-from cogmap.errors import CogmapError
+from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.experiments.registry import Experiment, experiments, run_experiment
 from cogmap.portable import arithmetic
 from cogmap.sweeps.ledger import KEPT, MARK, Ledger, disk_errors, is_full_disk
@@ -67,7 +67,7 @@ def _outcome(task: Task) -> dict[str, Any]:
     experiments().setdefault(point.experiment, task.chosen)
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # the table says which maps are not trusted
+            warnings.simplefilter("ignore", UntrustedMapWarning)  # the table says which maps are not trusted
             found = run_experiment(
                 point.experiment,
                 room=point.room if point.any_room else None,

@@ -4,6 +4,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from neurons.angles import wrap_angle
 from neurons.layers.afferents import Afferents
 
 
@@ -50,19 +51,15 @@ class HeadDirectionCells(nn.Module):
         The nearest `winners` units learn from each: with the neighbours on both sides none is left behind.
         `window` is how many views a unit remembers when it averages.
         """
-        apart = _wrapped(headings[:, None] - self.preferred)
+        apart = wrap_angle(headings[:, None] - self.preferred)
         unit = apart.abs().topk(min(winners, len(self.preferred)), dim=1, largest=False).indices
         flat = unit.flatten()
         self.responsibility *= max(0.0, 1 - len(headings) / window)
         self.responsibility.index_add_(0, flat, torch.ones(len(flat)))
         # deviations are averaged, not angles: those would tear at ±π
         pull = torch.zeros_like(self.responsibility).index_add_(0, flat, apart.gather(1, unit).flatten())
-        self.preferred = _wrapped(self.preferred + pull / self.responsibility.clamp(min=1e-6))
+        self.preferred = wrap_angle(self.preferred + pull / self.responsibility.clamp(min=1e-6))
 
     def tuning(self, headings: Float[Tensor, "views"]) -> Float[Tensor, "views cells"]:
         """Rates in Hz that a heading demands."""
         return self.peak * torch.exp(self.concentration * (torch.cos(headings[:, None] - self.preferred) - 1))
-
-
-def _wrapped(angle: Float[Tensor, "*shape"]) -> Float[Tensor, "*shape"]:
-    return torch.remainder(angle + torch.pi, 2 * torch.pi) - torch.pi

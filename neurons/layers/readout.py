@@ -6,6 +6,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
+from neurons.angles import mean_angle
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.synchronisation import Compass
 from neurons.layers.charts import DIMENSIONS, Charts
@@ -83,7 +84,7 @@ class Readout(nn.Module):
         chart, weight = excited
         residual = codes[:, None] - charts.centres[chart]
         angle = self.phases[chart] + torch.einsum("nwc,nwc->nw", self.turning[chart], residual)
-        heading = torch.atan2((weight * angle.sin()).sum(dim=1), (weight * angle.cos()).sum(dim=1))
+        heading = mean_angle(angle, weight)
         slope = torch.einsum("nwd,nwdo->nwo", charts.coordinates(codes, chart), self.jacobians[chart])
         odour = torch.einsum("nw,nwo->no", weight, self.intercepts[chart] + slope)
         return heading, odour

@@ -10,10 +10,6 @@ from cogmap.cells.rates.spikes import SECONDS, check_seconds
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array, check_samples
 
-FAINTEST = 1e-3
-"""Hz; no bin has a lower rate, so that one spike where a cell was never heard makes a bin unlikely, not
-impossible."""
-
 
 def poisson_posterior(
     spikes: Real[np.ndarray, "views cells"],
@@ -21,6 +17,7 @@ def poisson_posterior(
     *,
     seconds: float = SECONDS,
     prior: Float[np.ndarray, "bins"] | None = None,
+    faintest: float = 1e-3,
 ) -> Float[np.ndarray, "views bins"]:
     """Probability of each bin given the spikes of independent Poisson cells.
 
@@ -37,6 +34,9 @@ def poisson_posterior(
         T, how long a view lasts.
     prior
         P(bin), in any unit; uniform by default. Occupancy makes rare places less likely.
+    faintest
+        No bin has a lower rate, Hz, so that one spike where a cell was never heard makes a bin unlikely, not
+        impossible.
 
     Raises
     ------
@@ -51,12 +51,11 @@ def poisson_posterior(
     check_samples(spikes)
     check_array("patterns", patterns, (spikes.shape[1], None))
     check_seconds(seconds)
-    rates = np.maximum(patterns.astype(float), FAINTEST)
+    rates = np.maximum(patterns.astype(float), faintest)
     likelihood = spikes.astype(float) @ np.log(rates) - seconds * rates.sum(axis=0)
     if prior is not None:
         check_array("prior", prior, (patterns.shape[1],))
         if prior.min() < 0 or prior.max() <= 0:
             raise CogmapError("prior is negative or nowhere positive; give a probability to every bin")
         likelihood += special.xlogy(1, prior)
-    posterior: np.ndarray = special.softmax(likelihood, axis=1)
-    return posterior
+    return np.asarray(special.softmax(likelihood, axis=1))

@@ -8,18 +8,19 @@ import numpy as np
 from jaxtyping import Complex, Float
 from sklearn.neighbors import KNeighborsRegressor
 
+from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
-
-NEIGHBOURS = 4
 
 
 def decode_positions(
     train_odours: Float[np.ndarray, "train odorants"],
     train_positions: Float[np.ndarray, "train 2"],
     odours: Float[np.ndarray, "views odorants"],
+    *,
+    neighbours: int = 4,
 ) -> Float[np.ndarray, "views 2"]:
-    """Position in m by 4-nearest-neighbour regression on log odour, weights 1/distance.
+    """Position in m by nearest-neighbour regression on log odour, weights 1/distance.
 
     Parameters
     ----------
@@ -29,21 +30,22 @@ def decode_positions(
         Where those views were taken in m, (train, 2).
     odours
         Log concentrations to decode, (views, odorants).
+    neighbours
+        How many training views a position is averaged over.
 
     Raises
     ------
     CogmapError
-        For values that are not finite, shapes that do not fit, fewer than four training views.
+        For values that are not finite, shapes that do not fit, fewer training views than neighbours.
     """
     check_array("train_odours", train_odours, (None, None))
     check_array("train_positions", train_positions, (len(train_odours), 2))
     check_array("odours", odours, (None, train_odours.shape[1]))
-    if len(train_odours) < NEIGHBOURS:
-        raise CogmapError(f"{len(train_odours)} training views; give at least {NEIGHBOURS}")
-    decoder = KNeighborsRegressor(n_neighbors=NEIGHBOURS, weights="distance", algorithm="kd_tree")
+    if len(train_odours) < neighbours:
+        raise CogmapError(f"{len(train_odours)} training views; give at least {neighbours}")
+    decoder = KNeighborsRegressor(n_neighbors=neighbours, weights="distance", algorithm="kd_tree")
     decoder.fit(train_odours.astype(float), train_positions.astype(float))
-    decoded: np.ndarray = decoder.predict(odours.astype(float))
-    return decoded
+    return np.asarray(decoder.predict(odours.astype(float)))
 
 
 def position_errors(
@@ -62,10 +64,8 @@ def position_errors(
         For values that are not finite, shapes that do not fit, fewer than four training views.
     """
     check_array("positions", positions, (len(odours), 2))
-    missed: np.ndarray = np.linalg.norm(
-        decode_positions(train_odours, train_positions, odours) - positions, axis=1
-    )
-    return missed
+    missed = decode_positions(train_odours, train_positions, odours) - positions
+    return np.asarray(np.linalg.norm(missed, axis=1))
 
 
 def likeliest(
@@ -132,8 +132,7 @@ def heading_errors(
     check_array("phase", phase, (None,))
     check_array("headings", headings, (len(phase),))
     sign = -1 if frame.mirror else 1
-    error: np.ndarray = np.angle(np.exp(1j * (sign * phase.astype(float) + frame.rotation - headings)))
-    return error
+    return wrap_angle(sign * phase.astype(float) + frame.rotation - headings)
 
 
 class MapFrame(NamedTuple):
@@ -184,5 +183,4 @@ def place_map(mapped: Float[np.ndarray, "views 2"], frame: MapFrame) -> Float[np
 
 
 def _complex(points: Float[np.ndarray, "points 2"]) -> Complex[np.ndarray, "points"]:
-    combined: np.ndarray = points.astype(float) @ np.array([1, 1j])
-    return combined
+    return np.asarray(points.astype(float) @ np.array([1, 1j]))

@@ -38,8 +38,7 @@ def pattern_correlations(
     """
     check_array("activity", activity, (None, None))
     check_array("patterns", patterns, (activity.shape[1], None))
-    found: np.ndarray = standardised(activity.astype(float)) @ standardised(patterns.T.astype(float)).T
-    return found
+    return np.asarray(standardised(activity.astype(float)) @ standardised(patterns.T.astype(float)).T)
 
 
 def population_vector_correlations(one: RateMaps, other: RateMaps) -> Float[np.ndarray, "ny nx"]:

@@ -7,9 +7,6 @@ from jaxtyping import Float
 
 from cogmap.cells.rates.ratios import ratio
 
-CONSTANT = 1e-9
-"""A row that varies by less than this part of its size is constant: the rest is rounding."""
-
 
 def correlations(
     one: Float[np.ndarray, "rows samples"], other: Float[np.ndarray, "rows samples"]
@@ -20,8 +17,7 @@ def correlations(
     """
     known = ~(np.isnan(one) | np.isnan(other))
     a, b = (standardised(np.where(known, rows, np.nan)) for rows in (one, other))
-    products: np.ndarray = np.sum(a * b, axis=1)
-    return products
+    return np.asarray(np.sum(a * b, axis=1))
 
 
 def standardised(rows: Float[np.ndarray, "rows samples"]) -> Float[np.ndarray, "rows samples"]:
@@ -35,4 +31,5 @@ def standardised(rows: Float[np.ndarray, "rows samples"]) -> Float[np.ndarray, "
     deviation = np.where(known, rows - mean, 0.0)
     length = np.linalg.norm(deviation, axis=1, keepdims=True)
     size = np.linalg.norm(filled, axis=1, keepdims=True)
-    return ratio(deviation, np.where(length > CONSTANT * size, length, 0.0))
+    # A row that varies by less than this part of its size is constant: the rest is rounding.
+    return ratio(deviation, np.where(length > 1e-9 * size, length, 0.0))

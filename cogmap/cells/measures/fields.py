@@ -12,13 +12,6 @@ from cogmap.cells.rates.maps import RateMaps
 from cogmap.cells.rates.ratios import ratio
 from cogmap.errors import CogmapError
 
-THRESHOLD = 0.3
-"""A field is where the rate is at least this part of the peak."""
-SMALLEST = 0.05
-"""The least area of a field in m²."""
-LARGEST = 0.5
-"""A region of more than this part of the visited area is no field: a uniform cell has none."""
-
 
 @dataclass(frozen=True, eq=False)
 class PlaceFields:
@@ -39,21 +32,34 @@ class PlaceFields:
         return self.labels > 0
 
 
-def place_fields(maps: RateMaps) -> PlaceFields:
+def place_fields(
+    maps: RateMaps, *, threshold: float = 0.3, least_area: float = 0.05, most_share: float = 0.5
+) -> PlaceFields:
     """Find the fields of every cell.
 
-    A field is a region of bins that share edges (4-connected), where the rate is at least 30 % of the cell's
-    peak, of at least 0.05 m² and of at most half the visited area.
+    A field is a region of bins that share edges (4-connected) where the rate is high, neither too small nor
+    too large.
+
+    Parameters
+    ----------
+    maps
+        Of the population.
+    threshold
+        The least rate in a field, as a part of the cell's peak.
+    least_area
+        Of a field, m²: five bins of 0.1 m.
+    most_share
+        Of the visited area that a field may take: a uniform cell has none.
     """
     peak = np.nanmax(maps.rates, axis=(1, 2), keepdims=True)
-    above = (maps.rates >= THRESHOLD * peak) & (peak > 0)
+    above = (maps.rates >= threshold * peak) & (peak > 0)
     within_a_cell = np.zeros((3, 3, 3), dtype=bool)
     within_a_cell[1] = ndimage.generate_binary_structure(2, 1)
     regions, _ = ndimage.label(above, within_a_cell)
     found, first, size = np.unique(regions, return_index=True, return_counts=True)
     # Half a bin of slack: five bins of 0.01 m² are 0.05 m² whatever the rounding.
-    enough = size > SMALLEST / maps.bin_area - 0.5
-    kept = (found > 0) & enough & (size <= LARGEST * maps.visited.sum())
+    enough = size > least_area / maps.bin_area - 0.5
+    kept = (found > 0) & enough & (size <= most_share * maps.visited.sum())
     cell = first // maps.occupancy.size
     largest_first = np.lexsort((-size, cell))
     largest_first = largest_first[kept[largest_first]]

@@ -17,16 +17,8 @@ from cogmap.inputs import check_samples
 
 LEAST_VECTOR = 0.5
 """A head-direction cell's mean vector is longer."""
-MOST_DRIFT = 15.0
-"""Degrees; a head-direction cell drifts less over the room."""
 MOST_INFORMATION = 0.3
 """bit/spike; a head-direction cell tells less about the place."""
-BLOCKS = 3
-"""The room's bounding box is split into this many blocks along either side."""
-BLOCK_VIEWS = 100
-"""A block with fewer views is left out: they tell a preferred direction to about 2°."""
-BLOCK_BINS = 12
-"""Coarser than over the whole room, so that the bins of a block have views."""
 
 
 def heading_statistics(
@@ -36,10 +28,13 @@ def heading_statistics(
     *,
     maps: RateMaps | None = None,
     seconds: float = SECONDS,
+    least_vector: float = LEAST_VECTOR,
+    most_drift_deg: float = 15.0,
+    most_information: float = MOST_INFORMATION,
 ) -> pd.DataFrame:
     """Measure every cell as a head-direction cell: one row per cell, one column per statistic.
 
-    A cell passes with a mean vector longer than .5, a drift below 15° and less than 0.3 bit/spike.
+    Unless told, a cell passes with a mean vector longer than .5, a drift below 15° and < 0.3 bit/spike.
 
     Parameters
     ----------
@@ -53,6 +48,12 @@ def heading_statistics(
         The rate maps of these cells; by default `rate_maps(rates, positions)`.
     seconds
         How long a view lasts; with the rates it says how many spikes the Rayleigh test has.
+    least_vector
+        A head-direction cell's mean vector is longer.
+    most_drift_deg
+        A head-direction cell drifts less over the room.
+    most_information
+        bit/spike; a head-direction cell tells less about the place.
 
     Returns
     -------
@@ -87,9 +88,9 @@ def heading_statistics(
         index=pd.RangeIndex(rates.shape[1], name="cell"),
     )
     table["passing"] = (
-        (table["mean_vector_length"] > LEAST_VECTOR)
-        & (table["drift_deg"] < MOST_DRIFT)
-        & (table["spatial_information"] < MOST_INFORMATION)
+        (table["mean_vector_length"] > least_vector)
+        & (table["drift_deg"] < most_drift_deg)
+        & (table["spatial_information"] < most_information)
     )
     return table
 
@@ -99,13 +100,21 @@ def _drift(
     positions: Float[np.ndarray, "views 2"],
     headings: Float[np.ndarray, "views"],
     vector: Complex[np.ndarray, "cells"],
+    *,
+    blocks: int = 3,
+    least_views: int = 100,
+    bins: int = 12,
 ) -> Float[np.ndarray, "cells"]:
-    """Median over blocks of the room of |preferred direction there − everywhere|, rad."""
+    """Median over blocks of the room of |preferred direction there − everywhere|, rad.
+
+    100 views tell a preferred direction to about 2°; bins are coarser than over the whole room, so that those
+    of a block have views.
+    """
     low, high = positions.min(axis=0), positions.max(axis=0)
-    block = BinEdges(*np.linspace(low, high, BLOCKS + 1).T).bin_of(positions)
+    block = BinEdges(*np.linspace(low, high, blocks + 1).T).bin_of(positions)
     turns = [
-        np.abs(np.angle(mean_vectors(tuning_curves(rates[here], headings[here], BLOCK_BINS)) * vector.conj()))
-        for here in (block == index for index in range(BLOCKS**2))
-        if here.sum() >= BLOCK_VIEWS
+        np.abs(np.angle(mean_vectors(tuning_curves(rates[here], headings[here], bins)) * vector.conj()))
+        for here in (block == index for index in range(blocks**2))
+        if here.sum() >= least_views
     ]
     return pd.DataFrame(turns, columns=range(rates.shape[1])).median().to_numpy(dtype=float)

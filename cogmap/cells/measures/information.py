@@ -19,8 +19,7 @@ def spatial_information(maps: RateMaps) -> Float[np.ndarray, "cells"]:
     hippocampal code, NIPS 5.
     """
     occupancy, gain = _gain(maps)
-    information: np.ndarray = np.sum(occupancy * special.xlogy(gain, gain), axis=1) / np.log(2)
-    return information
+    return np.asarray(np.sum(occupancy * special.xlogy(gain, gain), axis=1) / np.log(2))
 
 
 def sparsity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
@@ -29,8 +28,7 @@ def sparsity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
     Source: Skaggs, McNaughton, Wilson & Barnes 1996, Hippocampus 6.
     """
     occupancy, gain = _gain(maps)
-    part: np.ndarray = 1 / np.sum(occupancy * gain**2, axis=1)
-    return part
+    return np.asarray(1 / np.sum(occupancy * gain**2, axis=1))
 
 
 def selectivity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
@@ -38,8 +36,7 @@ def selectivity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
 
     Source: Skaggs, McNaughton, Wilson & Barnes 1996, Hippocampus 6.
     """
-    highest: np.ndarray = _gain(maps)[1].max(axis=1)
-    return highest
+    return np.asarray(_gain(maps)[1].max(axis=1))
 
 
 def _gain(maps: RateMaps) -> tuple[Float[np.ndarray, "bins"], Float[np.ndarray, "cells bins"]]:

@@ -15,7 +15,6 @@ from cogmap.cells.rates.maps import RateMaps, rate_maps
 from cogmap.cells.rates.tuning import mean_vectors
 from cogmap.inputs import check_samples
 
-DIRECTION_BINS = 12
 LEAST_INFORMATION = 0.5
 """bit/spike; a place cell has more."""
 MOST_DIRECTION = 0.25
@@ -29,10 +28,13 @@ def place_statistics(
     *,
     maps: RateMaps | None = None,
     fields: PlaceFields | None = None,
+    least_information: float = LEAST_INFORMATION,
+    most_direction: float = MOST_DIRECTION,
 ) -> pd.DataFrame:
     """Measure every cell as a place cell: one row per cell, one column per statistic.
 
-    A cell passes with exactly one field, more than 0.5 bit/spike and an in-field direction vector below .25.
+    Unless told, a cell passes with exactly one field, more than 0.5 bit/spike and an in-field direction
+    vector below .25.
 
     Parameters
     ----------
@@ -46,6 +48,10 @@ def place_statistics(
         The rate maps of these cells; by default `rate_maps(rates, positions)`.
     fields
         The fields in these maps; by default `place_fields(maps)`.
+    least_information
+        bit/spike; a place cell has more.
+    most_direction
+        A place cell's direction vector inside its field is shorter.
 
     Returns
     -------
@@ -85,8 +91,8 @@ def place_statistics(
     )
     table["passing"] = (
         (table["fields"] == 1)
-        & (table["spatial_information"] > LEAST_INFORMATION)
-        & (table["in_field_direction_vector"] < MOST_DIRECTION)
+        & (table["spatial_information"] > least_information)
+        & (table["in_field_direction_vector"] < most_direction)
     )
     return table
 
@@ -97,10 +103,11 @@ def _in_field_vectors(
     headings: Float[np.ndarray, "views"],
     maps: RateMaps,
     fields: PlaceFields,
+    *,
+    bins: int = 12,
 ) -> Float[np.ndarray, "cells"]:
     """Length of the mean vector of each cell over the views inside its fields, NaN without any."""
     place = maps.edges.bin_of(positions)
     inside = fields.masks.reshape(len(maps), -1)[:, place].T & (place >= 0)[:, None]
-    curves = means_by_bin(heading_bin(headings, DIRECTION_BINS), DIRECTION_BINS, rates, inside)
-    length: np.ndarray = np.abs(mean_vectors(curves.T))
-    return length
+    curves = means_by_bin(heading_bin(headings, bins), bins, rates, inside)
+    return np.asarray(np.abs(mean_vectors(curves.T)))

@@ -11,9 +11,6 @@ from cogmap.cells.rates.bins import heading_bin
 from cogmap.cells.rates.ratios import ratio
 from cogmap.inputs import check_samples
 
-SMALL = 50
-"""Spikes below which the terms of second order count."""
-
 
 class RayleighTest(NamedTuple):
     """Of every cell; NaN with no more than one spike, which always has a direction."""
@@ -63,5 +60,5 @@ def rayleigh_test(
     number = np.where(number > 1, number, np.nan)
     z = number * resultant**2
     second = 24 * z - 132 * z**2 + 76 * z**3 - 9 * z**4
-    bracket = np.where(number < SMALL, 1 + (2 * z - z**2) / (4 * number) - second / (288 * number**2), 1.0)
+    bracket = np.where(number < 50, 1 + (2 * z - z**2) / (4 * number) - second / (288 * number**2), 1.0)
     return RayleighTest(z, np.clip(np.exp(-z) * bracket, 0.0, 1.0))

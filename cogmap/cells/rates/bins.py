@@ -104,8 +104,7 @@ def heading_bin(headings: Float[np.ndarray, "views"], bins: int) -> Int[np.ndarr
 
 def heading_centres(bins: int) -> Float[np.ndarray, "bins"]:
     """Give the middles of equal bins around the circle in rad, in the order of `heading_bin`."""
-    centres: np.ndarray = -np.pi + (np.arange(bins) + 0.5) * (2 * np.pi / bins)
-    return centres
+    return np.asarray(-np.pi + (np.arange(bins) + 0.5) * (2 * np.pi / bins))
 
 
 def sums_by_bin(
@@ -117,8 +116,7 @@ def sums_by_bin(
         (np.ones(len(views)), (index[views], views)),
         shape=(bins, len(index)),
     )
-    sums: np.ndarray = member @ values
-    return sums
+    return np.asarray(member @ values)
 
 
 def means_by_bin(

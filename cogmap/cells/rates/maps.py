@@ -28,8 +28,7 @@ class RateMaps:
     @property
     def visited(self) -> Bool[np.ndarray, "ny nx"]:
         """The bins that have a rate."""
-        known: np.ndarray = ~np.isnan(self.rates[0])
-        return known
+        return np.asarray(~np.isnan(self.rates[0]))
 
     @property
     def bin_area(self) -> float:
@@ -39,8 +38,7 @@ class RateMaps:
     @property
     def patterns(self) -> Float[np.ndarray, "cells bins"]:
         """Rates in Hz in the visited bins alone: the population vector of each."""
-        known: np.ndarray = self.rates[:, self.visited]
-        return known
+        return np.asarray(self.rates[:, self.visited])
 
     @property
     def places(self) -> Float[np.ndarray, "bins 2"]:
@@ -64,8 +62,7 @@ class RateMaps:
         return np.array(self.rates, dtype=dtype, copy=copy)
 
     def __getitem__(self, cell: int) -> Float[np.ndarray, "ny nx"]:
-        chosen: np.ndarray = self.rates[cell]
-        return chosen
+        return np.asarray(self.rates[cell])
 
     def __len__(self) -> int:
         return len(self.rates)

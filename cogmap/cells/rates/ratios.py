@@ -13,5 +13,4 @@ def ratio(
     shape = np.broadcast_shapes(numerator.shape, denominator.shape)
     dtype = np.result_type(numerator, float)
     unknown = np.full(shape, np.nan, dtype)
-    quotient: np.ndarray = np.divide(numerator, denominator, out=unknown, where=denominator > 0, dtype=dtype)
-    return quotient
+    return np.asarray(np.divide(numerator, denominator, out=unknown, where=denominator > 0, dtype=dtype))

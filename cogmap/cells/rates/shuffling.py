@@ -11,9 +11,6 @@ from jaxtyping import Float, Real
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_samples
 
-LEAST_SHIFT = 100
-"""Views, about 30 s of a walk: by then the animal is elsewhere."""
-
 
 class ShuffleTest(NamedTuple):
     """A statistic of every cell beside its null; NaN where it has no value."""
@@ -30,7 +27,7 @@ def shuffle_test(
     rng: np.random.Generator,
     *,
     shuffles: int = 100,
-    least_shift: int = LEAST_SHIFT,
+    least_shift: int = 100,
 ) -> ShuffleTest:
     """Compare a statistic with that of rates shifted in time around the recording's circle.
 
@@ -49,7 +46,8 @@ def shuffle_test(
     shuffles
         How many.
     least_shift
-        Views by which rates are shifted at least, forward or backward.
+        Views by which rates are shifted at least, forward or backward. 100 are about 30 s of a walk: by then
+        the animal is elsewhere.
 
     Raises
     ------

@@ -8,8 +8,6 @@ from jaxtyping import Float, Int
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_samples
 
-PEAK = 20.0
-"""Highest rate of a cell that spikes, Hz."""
 SECONDS = 0.3
 """How long a view lasts: about what a brownian walk takes from one to the next."""
 
@@ -18,7 +16,7 @@ def poisson_spikes(
     rates: Float[np.ndarray, "views cells"],
     rng: np.random.Generator,
     *,
-    peak: float | None = PEAK,
+    peak: float | None = 20.0,
     seconds: float = SECONDS,
 ) -> Int[np.ndarray, "views cells"]:
     """Draw how often each cell spikes in each view, n ~ Poisson(λ T), independent of one another.
@@ -46,8 +44,7 @@ def poisson_spikes(
             raise CogmapError(f"peak is {peak} Hz; give a positive rate, or None to leave the rates alone")
         highest = rates.max(axis=0)
         rates = rates * (peak / np.where(highest > 0, highest, peak))
-    counts: np.ndarray = rng.poisson(rates.astype(float) * seconds)
-    return counts
+    return np.asarray(rng.poisson(rates.astype(float) * seconds))
 
 
 def check_seconds(seconds: float) -> None:

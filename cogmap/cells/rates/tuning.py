@@ -77,8 +77,7 @@ def tuning_widths(curves: Float[np.ndarray, "cells bins"]) -> Float[np.ndarray, 
     turn = heading_centres(curves.shape[1])[seen][once_round]
     turn = (turn - turn[:, :1]) % (2 * np.pi)
     turn[:, -1] = 2 * np.pi
-    width: np.ndarray = _fall(gain, turn) + _fall(gain[:, ::-1], 2 * np.pi - turn[:, ::-1])
-    return width
+    return np.asarray(_fall(gain, turn) + _fall(gain[:, ::-1], 2 * np.pi - turn[:, ::-1]))
 
 
 def _fall(

@@ -12,9 +12,6 @@ from ompl import base, geometric, util
 
 from arena import Arena
 
-MOMENT = 0.05
-"""Seconds by which the roadmap grows at a time, and that a query may take."""
-
 
 def answer(request: dict[str, Any]) -> list[list[list[float]] | None]:
     """Grow one roadmap in SE(2), then plan between the pairs on it."""
@@ -35,8 +32,9 @@ def answer(request: dict[str, Any]) -> list[list[list[float]] | None]:
     planner = geometric.PRM(setup.getSpaceInformation())
     setup.setPlanner(planner)
     setup.setup()
+    moment = 0.05  # s by which the roadmap grows at a time, and that a query may take
     while planner.milestoneCount() < request["milestones"]:
-        planner.growRoadmap(MOMENT)
+        planner.growRoadmap(moment)
     paths: list[list[list[float]] | None] = []
     for pair in request["pairs"]:
         planner.clearQuery()
@@ -48,7 +46,7 @@ def answer(request: dict[str, Any]) -> list[list[list[float]] | None]:
             end.setYaw(heading)
             ends.append(end)
         setup.setStartAndGoalStates(*ends)
-        setup.solve(MOMENT)
+        setup.solve(moment)
         found = setup.getSolutionPath().getStates() if setup.haveExactSolutionPath() else None
         paths.append(None if found is None else [[s.getX(), s.getY(), s.getYaw()] for s in found])
     return paths

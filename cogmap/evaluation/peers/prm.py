@@ -16,9 +16,6 @@ from arena import Arena
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
 
-PATIENCE = 600
-"""Seconds after which the planner is given up."""
-
 
 def prm_paths(
     arena: Arena,
@@ -27,6 +24,7 @@ def prm_paths(
     radius: float,
     milestones: int,
     seed: int = 0,
+    patience: float = 600.0,
 ) -> list[Float[np.ndarray, "_ 3"] | None] | None:
     """Plan in SE(2) with the arena's own collision check, on one roadmap for all queries.
 
@@ -44,6 +42,8 @@ def prm_paths(
         Of the roadmap: as many as there are views, for a fair comparison.
     seed
         Of OMPL. The last milestones still depend on the clock.
+    patience
+        After which the planner is given up, s.
 
     Returns
     -------
@@ -73,9 +73,9 @@ def prm_paths(
         request.write_text(json.dumps(order), encoding="utf-8")
         command = [sys.executable, "-m", "cogmap.evaluation.peers.ompl_worker", str(request), str(response)]
         try:
-            ended = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE, check=False)  # noqa: S603
+            ended = subprocess.run(command, capture_output=True, text=True, timeout=patience, check=False)  # noqa: S603
         except subprocess.TimeoutExpired:
-            raise CogmapError(f"OMPL was not done after {PATIENCE} s; ask for fewer milestones") from None
+            raise CogmapError(f"OMPL was not done after {patience:g} s; ask for fewer milestones") from None
         if not response.is_file():
             raise CogmapError(f"OMPL failed with code {ended.returncode}: {ended.stderr.strip()[-500:]}")
         paths = json.loads(response.read_text(encoding="utf-8"))

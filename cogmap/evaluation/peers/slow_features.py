@@ -12,17 +12,6 @@ from sklearn.exceptions import ConvergenceWarning
 
 from cogmap.threads import one_thread
 
-SLOW = 32
-"""Features that the first stage hands to the second."""
-CELLS = 16
-"""Independent components of the slowest features of the second."""
-STEEPEST = 7.0
-"""Standard deviations beyond which a feature is cut before it is squared again."""
-FAINTEST = 1e-7
-"""Least variance, as a share of the largest, of a direction that is whitened."""
-PEAK = 20.0
-"""Highest rate on the views that were learnt from, Hz."""
-
 
 class SlowCells(NamedTuple):
     """What views evoke."""
@@ -41,16 +30,21 @@ class _Stage(NamedTuple):
 
     def __call__(self, x: Float[np.ndarray, "views inputs"]) -> Float[np.ndarray, "views features"]:
         slow = (_expand(x) - self.mean) @ self.weights
-        clipped: np.ndarray = np.clip(slow, -STEEPEST, STEEPEST)
+        clipped: np.ndarray = np.clip(slow, -7.0, 7.0)  # standard deviations: the next stage squares it again
         return clipped
 
 
 def slow_cells(
-    walk: Float[np.ndarray, "views components"], *test: Float[np.ndarray, "_ components"], seed: int = 0
+    walk: Float[np.ndarray, "views components"],
+    *test: Float[np.ndarray, "_ components"],
+    slow: int = 32,
+    cells: int = 16,
+    peak: float = 20.0,
+    seed: int = 0,
 ) -> list[SlowCells]:
     """Learn slow features of views in the order of a walk, make them sparse, and evoke them by other views.
 
-    Twice: expand to all products of two inputs, whiten, and keep what varies least from view to view. The 16
+    Twice: expand to all products of two inputs, whiten, and keep what varies least from view to view. The
     slowest outputs of the second stage are then turned by independent component analysis into cells, whose
     sign makes them fire seldom and strongly.
 
@@ -60,6 +54,12 @@ def slow_cells(
         Codes of views in the order in which they were seen.
     *test
         Codes that evoke the cells.
+    slow
+        Features that the first stage hands to the second, which expands 32 to 560.
+    cells
+        Independent components of the slowest features of the second stage.
+    peak
+        Highest rate of each cell on the walk, Hz.
     seed
         Of the independent components.
 
@@ -73,16 +73,16 @@ def slow_cells(
     with one_thread(), warnings.catch_warnings():
         warnings.simplefilter("ignore", ConvergenceWarning)
         scale = walk.std(axis=0)
-        first = learn_stage(walk / scale, SLOW)
+        first = learn_stage(walk / scale, slow)
         middle = first(walk / scale)
-        second = learn_stage(middle, min(CELLS, middle.shape[1]))
-        slow = second(middle)
-        ica = FastICA(whiten="unit-variance", random_state=seed, max_iter=500).fit(slow)
-        train = ica.transform(slow)
+        second = learn_stage(middle, min(cells, middle.shape[1]))
+        slowest = second(middle)
+        ica = FastICA(whiten="unit-variance", random_state=seed, max_iter=500).fit(slowest)
+        train = ica.transform(slowest)
         sign = np.where((train**3).mean(axis=0) < 0, -1.0, 1.0)
         most = np.maximum((sign * train).max(axis=0), np.finfo(float).tiny)
         features = [sign * ica.transform(second(first(codes / scale))) for codes in test]
-        return [SlowCells(found, PEAK * np.maximum(found, 0) / most) for found in features]
+        return [SlowCells(found, peak * np.maximum(found, 0) / most) for found in features]
 
 
 def learn_stage(x: Float[np.ndarray, "views inputs"], count: int) -> _Stage:
@@ -91,7 +91,7 @@ def learn_stage(x: Float[np.ndarray, "views inputs"], count: int) -> _Stage:
     mean = expanded.mean(axis=0)
     expanded -= mean
     variance, axes = np.linalg.eigh(expanded.T @ expanded / len(expanded))
-    kept = variance > FAINTEST * variance[-1]
+    kept = variance > 1e-7 * variance[-1]  # whitening a fainter direction amplifies rounding
     white = axes[:, kept] / np.sqrt(variance[kept])
     change = np.diff(expanded, axis=0)
     _, turn = np.linalg.eigh(white.T @ (change.T @ change / len(change)) @ white)

@@ -9,6 +9,7 @@ import pandas as pd
 from jaxtyping import Float
 
 from arena import Brownian, Camera
+from arena.angles import wrap_angle
 from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
@@ -75,10 +76,10 @@ def interpolated_poses(
     """Give Σ w · pose for each query; headings are counted from that of the nearest view, the short way."""
     near = poses[location.indices]
     ahead = near[:, :1, 2]
-    turn = np.angle(np.exp(1j * (near[:, :, 2] - ahead)))
+    turn = wrap_angle(near[:, :, 2] - ahead)
     heading = ahead[:, 0] + (location.weights * turn).sum(axis=1)
     places = (location.weights[:, :, None] * near[:, :, :2]).sum(axis=1)
-    return np.column_stack([places, np.angle(np.exp(1j * heading))])
+    return np.column_stack([places, wrap_angle(heading)])
 
 
 def _columns(prefix: str, poses: Float[np.ndarray, "views 3"]) -> dict[str, np.ndarray]:
@@ -90,7 +91,7 @@ def _errors(
 ) -> dict[str, np.ndarray]:
     return {
         f"{prefix}position_error_m": np.linalg.norm((read - truth)[:, :2], axis=1),
-        f"{prefix}heading_error_deg": np.rad2deg(np.abs(np.angle(np.exp(1j * (read - truth)[:, 2])))),
+        f"{prefix}heading_error_deg": np.rad2deg(np.abs(wrap_angle((read - truth)[:, 2]))),
     }
 
 

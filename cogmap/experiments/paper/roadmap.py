@@ -12,6 +12,7 @@ from jaxtyping import Float, Int
 from matplotlib.figure import Figure
 
 from arena import Arena, Brownian, Camera, Disc
+from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
 from cogmap.evaluation.deviation import path_deviation, path_length
 from cogmap.evaluation.peers.prm import prm_paths
@@ -138,7 +139,7 @@ def _plan(
 
 def _arrives(path: Float[np.ndarray, "steps 3"]) -> bool:
     off = path[[0, -1]] - path[[1, -2]]
-    turn = np.abs(np.angle(np.exp(1j * off[:, 2])))
+    turn = np.abs(wrap_angle(off[:, 2]))
     return bool((np.linalg.norm(off[:, :2], axis=1) <= ARRIVED[0]).all() and (turn <= ARRIVED[1]).all())
 
 

@@ -9,6 +9,7 @@ import pandas as pd
 from jaxtyping import Float, Int
 
 from arena import Brownian, Camera
+from arena.angles import wrap_angle
 from cogmap.evaluation.pose_agreement import motion_distances, pose_agreement
 from cogmap.experiments.conditions import Conditions, poses_of
 from cogmap.experiments.registry import experiment
@@ -80,9 +81,7 @@ def _nearest_table(
                     "query": np.arange(len(test)),
                     "view": found,
                     "position_error_m": np.linalg.norm(poses[found, :2] - test[:, :2], axis=1),
-                    "heading_error_deg": np.rad2deg(
-                        np.abs(np.angle(np.exp(1j * (poses[found, 2] - test[:, 2]))))
-                    ),
+                    "heading_error_deg": np.rad2deg(np.abs(wrap_angle(poses[found, 2] - test[:, 2]))),
                 }
             )
             for name, found in best.items()

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.figure import Figure
 
+from arena.angles import wrap_angle
 from arena.bodies.disc import Disc
 from arena.eye.camera import Camera
 from arena.rooms.arena import Arena
@@ -47,5 +48,5 @@ def _spread(arena: Arena, views: int) -> Float[np.ndarray, "views 3"]:
     xy = arena.sample_free(1000, Disc().radius, np.random.default_rng(0))
     taken = farthest_points(euclidean(xy), views, 0).indices
     # Headings a golden angle apart never repeat and soon point everywhere.
-    headings = (np.pi * (3 - np.sqrt(5)) * np.arange(len(taken)) + np.pi) % (2 * np.pi) - np.pi
+    headings = wrap_angle(np.pi * (3 - np.sqrt(5)) * np.arange(len(taken)))
     return np.column_stack([xy[taken], headings])

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from arena.angles import wrap_angle
 from arena.rooms.arena import Arena
 from cogmap.plots.rooms.room import draw_surfaces
 from cogmap.plots.style import SOFT, direction_colours, heading_bar, new_figure, tidy, tidy_room
@@ -50,7 +51,7 @@ def plot_goals(arena: Arena, views: pd.DataFrame) -> Figure:
     heading_bar(left)
     tidy(right, x="true heading (°)", y="orientation (°)", title="orientation passed from ring to ring")
     right.plot([-180, 180], [-180, 180], color=SOFT, linewidth=0.6)
-    degrees = [np.rad2deg(np.angle(np.exp(1j * angle))) for angle in (heading, orientation)]
+    degrees = [np.rad2deg(wrap_angle(angle)) for angle in (heading, orientation)]
     right.scatter(*degrees, s=4, c=views["ring"], cmap="viridis", linewidths=0)
     right.set(xlim=(-185, 185), ylim=(-185, 185), aspect="equal")
     return figure

@@ -8,6 +8,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from arena.angles import wrap_angle
 from cogmap.cells.rates.bins import bin_edges, means_by_bin
 from cogmap.inputs import check_array
 from cogmap.plots.style import (
@@ -67,8 +68,7 @@ def plot_compass(
 
 
 def _degrees(angles: Float[np.ndarray, " views"]) -> Float[np.ndarray, " views"]:
-    wrapped: np.ndarray = np.rad2deg(np.angle(np.exp(1j * angles.astype(float))))
-    return wrapped
+    return np.asarray(np.rad2deg(wrap_angle(angles.astype(float))))
 
 
 def _draw_agreement(

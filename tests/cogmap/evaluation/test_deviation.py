@@ -22,6 +22,11 @@ def test_a_tent_deviates_by_half_its_height() -> None:
     assert found.variance == pytest.approx(1 / 12, abs=0.002)
 
 
+def test_three_samples_see_the_ends_and_the_middle() -> None:
+    found = path_deviation(np.array([[0.0, 0, 0], [1, 1, 0], [2, 0, 0]]), samples=3)
+    assert found.mean == pytest.approx(1 / 3)
+
+
 def test_a_turn_counts_half_a_metre_a_radian() -> None:
     found = path_deviation(np.array([[0.0, 0, 0], [1, 0, 1.0], [2, 0, 0]]))
     assert found.maximum == pytest.approx(0.5, abs=0.01)

@@ -1,8 +1,12 @@
+import warnings
+
 import numpy as np
+import pytest
 
 from arena import Arena, Brownian, Camera, Disc, explore
+from cogmap import Activity, CognitiveMap, UntrustedMapWarning
 from cogmap.evaluation.ground_truth import GroundTruth
-from cogmap.evaluation.populations import competing_cells, grow_map, reachable_places
+from cogmap.evaluation.populations import competing_cells, grow_map, perceive, reachable_places
 
 
 def test_cells_that_compete_for_places_are_place_cells() -> None:
@@ -30,3 +34,23 @@ def test_a_small_body_reaches_more() -> None:
     room = Arena.load("open_field")
     small, large = (np.ptp(reachable_places(room, Disc(radius=radius)), axis=0) for radius in (0.05, 0.4))
     assert (small - large > 0.6).all()
+
+
+@pytest.mark.parametrize("warning", [UntrustedMapWarning, UserWarning])
+def test_only_a_map_that_is_not_trusted_is_left_to_the_metrics(
+    monkeypatch: pytest.MonkeyPatch, warning: type[Warning]
+) -> None:
+    def look(*_: object) -> Activity:
+        warnings.warn("this map is not to be trusted", warning, stacklevel=1)
+        return Activity(
+            *(np.zeros((1, 2), np.float32) for _ in range(2)),
+            np.zeros(1, np.float32),
+            *(np.zeros((1, 2), np.float32) for _ in range(2)),
+        )
+
+    monkeypatch.setattr(CognitiveMap, "perceive", look)
+    if warning is UserWarning:
+        with pytest.warns(UserWarning, match="trusted"):
+            perceive(CognitiveMap(), None)
+    else:
+        perceive(CognitiveMap(), None)

@@ -36,6 +36,12 @@ def test_distances_between_pieces_do_not_count() -> None:
     assert np.isfinite(found.pairs.to_numpy()).all()
 
 
+def test_so_many_pairs_are_drawn() -> None:
+    found = quasi_metric(*grid(1.0), sources=20, targets=30)
+    assert len(found.places) == found.pairs["source"].nunique() == 20
+    assert found.pairs["target"].nunique() == 30
+
+
 def test_the_same_seed_draws_the_same_pairs() -> None:
     one, same, other = (quasi_metric(*grid(1.0), seed=seed).pairs for seed in (1, 1, 2))
     assert one.equals(same)

@@ -11,7 +11,7 @@ import pytest
 import torch
 
 from arena import Arena, Brownian, Camera, Recording, explore
-from cogmap import Activity, CogmapError, CognitiveMap, score
+from cogmap import Activity, CogmapError, CognitiveMap, UntrustedMapWarning, score
 from neurons.circuit import Circuit
 from neurons.network import Network
 from neurons.stages import STAGES, Batch, Stage
@@ -169,7 +169,7 @@ def test_a_coarse_map_says_so(walk: Recording) -> None:
     coarse = CognitiveMap(charts=20, components=10).fit(walk.views, walk.odours)
     assert not coarse.trusted_
     assert "chart" in coarse.reason_
-    with pytest.warns(UserWarning, match="not to be trusted"):
+    with pytest.warns(UntrustedMapWarning, match="not to be trusted"):
         coarse.perceive(walk.views[:5])
 
 

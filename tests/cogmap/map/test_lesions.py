@@ -81,6 +81,16 @@ def test_the_map_itself_is_left_as_it_is(cmap: CognitiveMap) -> None:
         assert kept.equal(before[name]) or kept.isnan().any(), name
 
 
+def test_a_map_is_operated_on_in_memory(cmap: CognitiveMap, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(CognitiveMap, "save", None)
+    lesioned(with_blank_afferents(cmap), np.arange(10))
+
+
+def test_only_weights_that_a_map_has_can_be_changed(cmap: CognitiveMap) -> None:
+    with pytest.raises(KeyError):
+        with_state(cmap, {"charts.centers": torch.zeros(1)})
+
+
 def test_only_populations_have_afferents(cmap: CognitiveMap) -> None:
     with pytest.raises(KeyError):
         afferent_weights(cmap, "grid")

@@ -7,7 +7,7 @@ import xarray as xr
 from neurospatial.decoding.likelihood import log_poisson_likelihood
 from scipy import special, stats
 
-from cogmap.cells.decoding.bayes import FAINTEST, poisson_posterior
+from cogmap.cells.decoding.bayes import poisson_posterior
 from cogmap.cells.decoding.decoders import likeliest
 from cogmap.cells.rates.bins import heading_centres
 from cogmap.cells.rates.maps import rate_maps
@@ -89,10 +89,11 @@ def test_no_spikes_leave_the_prior_and_what_silence_says(patterns: np.ndarray) -
     assert posterior[0] == 0
 
 
-def test_one_stray_spike_does_not_make_a_place_impossible() -> None:
+@pytest.mark.parametrize("faintest", [1e-3, 0.1])
+def test_one_stray_spike_does_not_make_a_place_impossible(faintest: float) -> None:
     patterns = np.array([[0.0, 20], [20, 0]])
-    posterior = poisson_posterior(np.array([[1, 3], [1, 1]]), patterns)
-    odds = (20 / FAINTEST) ** 2
+    posterior = poisson_posterior(np.array([[1, 3], [1, 1]]), patterns, faintest=faintest)
+    odds = (20 / faintest) ** 2
     np.testing.assert_allclose(posterior[0], [odds / (1 + odds), 1 / (1 + odds)])
     np.testing.assert_allclose(posterior[1], 0.5)
 

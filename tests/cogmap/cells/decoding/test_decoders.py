@@ -35,6 +35,15 @@ def test_positions_agree_with_all_distances(wander: Callable) -> None:
     np.testing.assert_allclose(decode_positions(smell(train), train, smell(query)), expected, atol=1e-9)
 
 
+def test_one_neighbour_is_the_nearest(wander: Callable) -> None:
+    train, query = wander(3)[0], wander(50, seed=1)[0]
+    nearest = np.linalg.norm(smell(query)[:, None] - smell(train), axis=2).argmin(axis=1)
+    found = decode_positions(smell(train), train, smell(query), neighbours=1)
+    np.testing.assert_allclose(found, train[nearest])
+    with pytest.raises(CogmapError, match="3 training views; give at least 4"):
+        decode_positions(smell(train), train, smell(query))
+
+
 def test_a_training_view_decodes_to_itself(wander: Callable) -> None:
     train, _ = wander(100)
     np.testing.assert_allclose(position_errors(smell(train), train, smell(train), train), 0, atol=1e-9)

@@ -46,6 +46,14 @@ def test_single_fields_agree_with_neurospatial(wander: Callable, bump: Callable)
         np.testing.assert_array_equal(np.flatnonzero(mask.T[maps.visited.T]), np.sort(trusted))
 
 
+def test_what_makes_a_field_can_be_told() -> None:
+    maps = drawn("000000000|099944000|099944000|000000000")
+    assert place_fields(maps).area == pytest.approx(0.1)
+    assert place_fields(maps, threshold=0.5).area == pytest.approx(0.06)
+    assert place_fields(maps, least_area=0.11).number == 0
+    assert place_fields(maps, most_share=0.25).number == 0
+
+
 def test_two_fields_are_labelled_from_the_largest(wander: Callable, bump: Callable) -> None:
     positions, _ = wander(20_000)
     rates = bump(positions, (-1.0, 0.5), 0.2) + bump(positions, (1.0, -0.5), 0.3)

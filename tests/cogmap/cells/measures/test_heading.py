@@ -32,6 +32,18 @@ def test_only_the_heading_cell_passes(table: pd.DataFrame) -> None:
     assert table.index[table["passing"]].tolist() == ["heading"]
 
 
+@pytest.mark.parametrize(
+    "criterion", [{"least_vector": 1.0}, {"most_drift_deg": 0.0}, {"most_information": 0.0}]
+)
+def test_what_makes_a_head_direction_cell_can_be_told(
+    wander: Callable, von_mises: Callable, criterion: dict[str, float]
+) -> None:
+    positions, headings = wander()
+    cells = von_mises(headings)[:, None]
+    assert heading_statistics(cells, positions, headings)["passing"].all()
+    assert not heading_statistics(cells, positions, headings, **criterion)["passing"].any()
+
+
 def test_vector_and_preferred_direction(table: pd.DataFrame) -> None:
     for cell, kappa in (("heading", 4.0), ("broad", 0.8)):
         expected = special.iv(1, kappa) / special.iv(0, kappa)

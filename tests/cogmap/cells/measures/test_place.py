@@ -35,6 +35,16 @@ def test_only_the_place_cell_passes(table: pd.DataFrame) -> None:
     assert table.index[table["passing"]].tolist() == ["place"]
 
 
+@pytest.mark.parametrize("criterion", [{"least_information": 20.0}, {"most_direction": 0.0}])
+def test_what_makes_a_place_cell_can_be_told(
+    wander: Callable, bump: Callable, criterion: dict[str, float]
+) -> None:
+    positions, headings = wander()
+    cells = bump(positions)[:, None]
+    assert place_statistics(cells, positions, headings)["passing"].all()
+    assert not place_statistics(cells, positions, headings, **criterion)["passing"].any()
+
+
 def test_fields(table: pd.DataFrame) -> None:
     assert table["fields"].to_dict() == {
         "place": 1, "two fields": 2, "directional": 1, "uniform": 0, "noise": 0, "heading": 0, "broad": 0,

@@ -5,7 +5,6 @@ import pytest
 
 from cogmap.errors import CogmapError
 from cogmap.evaluation.deviation import path_length
-from cogmap.evaluation.peers import prm
 from cogmap.evaluation.peers.prm import prm_paths
 from cogmap.evaluation.shortest import shortest_lengths
 from tests.cogmap.evaluation.rooms import ROOM
@@ -31,7 +30,6 @@ def test_without_ompl_there_is_no_peer(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_when_ompl_fails_or_takes_too_long_it_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda _: True)
-    monkeypatch.setattr(prm, "PATIENCE", 7)
 
     def fail(*_: object, **__: object) -> subprocess.CompletedProcess[str]:
         return subprocess.CompletedProcess([], 3, "", "lost\n")
@@ -44,4 +42,4 @@ def test_when_ompl_fails_or_takes_too_long_it_is_said(monkeypatch: pytest.Monkey
         prm_paths(ROOM, np.zeros((1, 2, 3)), radius=0.2, milestones=5)
     monkeypatch.setattr(subprocess, "run", dawdle)
     with pytest.raises(CogmapError, match="not done after 7 s"):
-        prm_paths(ROOM, np.zeros((1, 2, 3)), radius=0.2, milestones=5)
+        prm_paths(ROOM, np.zeros((1, 2, 3)), radius=0.2, milestones=5, patience=7.0)

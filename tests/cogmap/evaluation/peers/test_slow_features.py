@@ -1,6 +1,6 @@
 import numpy as np
 
-from cogmap.evaluation.peers.slow_features import CELLS, PEAK, learn_stage, slow_cells
+from cogmap.evaluation.peers.slow_features import learn_stage, slow_cells
 
 
 def mixed(views: int) -> tuple[np.ndarray, np.ndarray]:
@@ -33,10 +33,15 @@ def test_cells_fire_seldom_and_strongly() -> None:
     place = np.cumsum(0.1 * rng.standard_normal((3000, 3)), axis=0)
     codes = np.concatenate([np.cos(place), np.sin(place), rng.standard_normal((3000, 2))], axis=1)
     learnt, other = slow_cells(codes, codes, codes[:10], seed=1)
-    assert learnt.rates.shape == (3000, CELLS)
-    np.testing.assert_allclose(learnt.rates.max(axis=0), PEAK)
+    assert learnt.rates.shape == (3000, 16)
+    np.testing.assert_allclose(learnt.rates.max(axis=0), 20)
     assert learnt.rates.min() == 0
     assert (np.mean(learnt.features**3, axis=0) >= 0).all()
     np.testing.assert_allclose(other.rates, learnt.rates[:10])
+    (few,) = slow_cells(codes, codes, slow=5, cells=4, peak=10.0, seed=1)
+    assert few.rates.shape == (3000, 4)
+    np.testing.assert_allclose(few.rates.max(axis=0), 10)
+    (fewer,) = slow_cells(codes, codes, slow=1, seed=1)
+    assert fewer.rates.shape == (3000, 1)
     (again,) = slow_cells(codes, codes, seed=1)
     np.testing.assert_array_equal(again.rates, learnt.rates)
