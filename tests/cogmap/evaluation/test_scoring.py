@@ -181,7 +181,7 @@ def test_without_a_compass_what_applies_is_left(
 
 
 def test_cells_that_have_been_measured_are_not_measured_again(
-    train: tuple[Ideal, np.ndarray], poses: np.ndarray
+    train: tuple[Activity, np.ndarray], poses: np.ndarray
 ) -> None:
     activity = ideal(poses, seed=1)
     truth = GroundTruth(train[1], poses, poses[:, :2])
