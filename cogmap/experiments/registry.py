@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from arena import Arena
 from arena.registry import modules_of
@@ -23,6 +23,9 @@ from cogmap.inputs import check_choice, checked_count
 
 FEWEST = 200
 """Views that every experiment can do with, if not well."""
+
+
+Run = TypeVar("Run", bound=Callable[..., Result])
 
 
 class Experiment(NamedTuple):
@@ -61,7 +64,7 @@ def experiment(
     any_room: bool = True,
     takes: tuple[str, ...] = (),
     extra_rooms: tuple[str, ...] = (),
-) -> Callable[[Callable[[Conditions], Result]], Callable[[Conditions], Result]]:
+) -> Callable[[Run], Run]:
     """Register a function as the experiment of its name; the parameters are those of `Experiment`.
 
     Raises
@@ -70,7 +73,7 @@ def experiment(
         When another module has an experiment of this name.
     """
 
-    def register(run: Callable[[Conditions], Result]) -> Callable[[Conditions], Result]:
+    def register(run: Run) -> Run:
         known = _registered.get(run.__name__)
         if known is not None and known.run.__module__ != run.__module__:
             raise CogmapError(

@@ -16,28 +16,26 @@ from cogmap.experiments.result import Result
 from cogmap.experiments.trial import Trial
 from cogmap.plots import plot_cases
 
-COLUMNS = (12, 24, 36, 60, 90, 360)
-"""Pixels of the eye around the body; it has a sixth as many rows."""
-USUAL_COLUMNS = 360
-CHARTS = (0.125, 0.25, 0.5, 1.0, 2.0)
-"""Parts of the usual number of charts."""
-RECEPTORS = 90
-"""Columns of the retina, which a coarser view is enlarged to."""
-LABELS = {"columns": "columns of the eye", "charts": "charts"}
-
 
 @experiment(room="furnished", views=17_000, takes=("nose", "motion", "body", "map"))
-def acuity(conditions: Conditions) -> Result:
+def acuity(
+    conditions: Conditions,
+    *,
+    eyes: tuple[int, ...] = (12, 24, 36, 60, 90, 360),
+    shares: tuple[float, ...] = (0.125, 0.25, 0.5, 2.0),
+) -> Result:
     """Learn the same walk through coarser and coarser eyes, and with fewer and more charts.
 
+    `eyes` are numbers of columns around the body, the last the usual one, with a sixth as many rows; `shares`
+    are parts of the usual number of charts.
     An eye of few columns has large pixels: 12 are 30° each. A view with fewer columns than the retina has
     receptors is enlarged, each pixel a block of its own, so that all else is the same for every eye. The
     usual number of charts is 3,000, or a third of the views when these are fewer than 9,000. Without a
     compass there is no error of heading.
     """
     usual = usual_charts(conditions.views)
-    cases = [(columns, usual) for columns in COLUMNS]
-    cases += [(USUAL_COLUMNS, round(part * usual)) for part in CHARTS if part != 1]
+    cases = [(columns, usual) for columns in eyes]
+    cases += [(eyes[-1], round(share * usual)) for share in shares]
     metrics: dict[str, Any] = {}
     for columns in dict.fromkeys(columns for columns, _ in cases):
         trial = explore_at_acuity(conditions, columns)
@@ -50,7 +48,9 @@ def acuity(conditions: Conditions) -> Result:
     return Result(
         metrics=metrics,
         tables={"cases": table},
-        figures={"acuity": plot_cases(table, LABELS, doubling=True)},
+        figures={
+            "acuity": plot_cases(table, {"columns": "columns of the eye", "charts": "charts"}, doubling=True)
+        },
         captions={
             "acuity": "Errors and cells with ever more columns of the eye, and with ever more charts",
         },
@@ -60,7 +60,8 @@ def acuity(conditions: Conditions) -> Result:
 def explore_at_acuity(conditions: Conditions, columns: int) -> Trial:
     """Walk with an eye of so many columns, its pixels repeated until they are as many as receptors."""
     trial = Trial.of(conditions, camera=Camera.panoramic(columns, columns // 6))
-    walk, fresh = (_enlarged(item, -(-RECEPTORS // columns)) for item in (trial.walk, trial.fresh))
+    # The retina has 90 columns of receptors, and a coarser view is enlarged to no fewer.
+    walk, fresh = (_enlarged(item, -(-90 // columns)) for item in (trial.walk, trial.fresh))
     return replace(trial, walk=walk, fresh=fresh)
 
 

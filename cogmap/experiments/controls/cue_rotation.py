@@ -86,9 +86,7 @@ def cue_rotation(conditions: Conditions) -> Result:
                 }
             )
         },
-        captions={
-            "examples": "Six cells of each population before and after the walls have turned",
-        },
+        captions={"examples": "Six cells of each population before and after the walls have turned"},
     )
 
 

@@ -23,18 +23,6 @@ from cogmap.map.lesions import afferent_weights, lesioned, weights_of, with_blan
 from cogmap.plots import plot_afferents, plot_courses
 from neurons.layers.heading_cells import HeadDirectionCells
 
-SEEN = (30, 100, 300, 1000, 3000, 10_000)
-"""Views after which the cells are measured, and after the last one."""
-SILENT = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
-"""Shares of charts."""
-REMEMBERED = 4000
-"""Views, or a few more, that positions and headings are read by."""
-MATURE = 0.9
-"""Share of the cells that pass in the end, at which a population counts as mature."""
-LEAST = 1.0
-"""Weights below this (Hz) are left out of the table."""
-
-
 POPULATIONS = ("place", "heading")
 
 
@@ -64,7 +52,12 @@ class Seen(NamedTuple):
 
 
 @experiment(room="furnished", views=17_000, takes=("nose", "camera", "body", "map"))
-def development(conditions: Conditions) -> Result:
+def development(
+    conditions: Conditions,
+    *,
+    after: tuple[int, ...] = (30, 100, 300, 1000, 3000, 10_000),
+    silent: tuple[float, ...] = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5),
+) -> Result:
     """Look at the weights from which place cells and head-direction cells fire.
 
     `growth`: the afferents of a grown map are blanked, and learn from the same walk once more while smell and
@@ -75,16 +68,17 @@ def development(conditions: Conditions) -> Result:
     correlation of the two.
 
     Positions are read from the rates of place cells by the decoder of `score`, headings from those of heading
-    cells by linear regression of their cosine and sine; both know some 4,000 of the training views.
+    cells by linear regression of their cosine and sine; both know some 4,000 of the training views. Cells are
+    measured `after` so many views and after the last; the `silent` are shares of charts.
     """
     trial = Trial.of(conditions)
     walk, cmap = trial.walk, trial.cmap
-    step = max(1, len(walk) // REMEMBERED)
+    step = max(1, len(walk) // 4000)
     truth = trial.truth._replace(train=trial.truth.train[::step])
     views = np.asarray(walk.views[::step]), trial.fresh.views
 
     growing, growth, begun = with_blank_afferents(cmap), [], 0
-    for seen in [*(count for count in SEEN if count < len(walk)), len(walk)]:
+    for seen in [*(count for count in after if count < len(walk)), len(walk)]:
         growing.partial_fit(walk.views[begun:seen], walk.odours[begun:seen])
         begun = seen
         growth.append({"views": seen, **_driven(growing, views, truth).figures})
@@ -94,7 +88,7 @@ def development(conditions: Conditions) -> Result:
             "silent": share,
             **_driven(lesioned(cmap, order[: round(share * len(order))]), views, truth).figures,
         }
-        for share in SILENT
+        for share in silent
     ]
     driven, direct = _driven(cmap, views, truth), _direct(cmap, views, truth)
     weights = {cells: afferent_weights(cmap, cells) for cells in POPULATIONS}
@@ -169,14 +163,16 @@ def _agreement(one: Float[np.ndarray, "views cells"], other: Float[np.ndarray, "
 
 def _mature(growth: pd.DataFrame, passing: str) -> int:
     """Count the views after which enough cells pass, and do so from then on."""
-    enough = (growth[passing] >= MATURE * growth[passing].iloc[-1]).to_numpy()
+    # Nine tenths of the cells that pass in the end.
+    enough = (growth[passing] >= 0.9 * growth[passing].iloc[-1]).to_numpy()
     return int(growth["views"].iloc[len(enough) - int(np.logical_and.accumulate(enough[::-1]).sum())])
 
 
 def _listed(
     cells: str, weights: Float[np.ndarray, "charts cells"], preferred: Float[np.ndarray, "charts 3"]
 ) -> pd.DataFrame:
-    chart, cell = np.nonzero(weights >= LEAST)
+    # Weights below 1 Hz are left out: nearly all of a table of every pair would be such.
+    chart, cell = np.nonzero(weights >= 1.0)
     x, y, heading = preferred[chart].T
     return pd.DataFrame(
         {

@@ -15,10 +15,6 @@ from cogmap.experiments.result import Result
 from cogmap.experiments.trial import Trial
 from cogmap.plots import plot_cell_types, plot_examples
 
-DIRECTIONAL = 0.5
-"""A longer in-field vector is that of a cell that fires three times as much one way as the other."""
-WALKS: dict[str, Motion] = {"open_field": Brownian(), "corridor": Track()}
-
 
 @experiment(room="furnished", views=17_000, takes=("nose", "camera", "body", "map"))
 def directionality(conditions: Conditions) -> Result:
@@ -37,7 +33,8 @@ def directionality(conditions: Conditions) -> Result:
     metrics: dict[str, Any] = {}
     cells: dict[str, CellMetrics] = {}
     drawn: dict[str, dict[str, Tuning]] = {}
-    for name, motion in WALKS.items():
+    walks: dict[str, Motion] = {"open_field": Brownian(), "corridor": Track()}
+    for name, motion in walks.items():
         trial = replace(Trial.of(conditions, motion), reachable=None)
         found = {
             "vision_only": trial.truth.measure(competing_cells(*trial.codes, seed=conditions.seed)[0]),
@@ -72,4 +69,5 @@ def directionality(conditions: Conditions) -> Result:
 def _share(found: CellMetrics) -> float:
     """Share of directional cells among those with a field; 0 without any."""
     vectors = found.place["in_field_direction_vector"].dropna()
-    return float((vectors > DIRECTIONAL).mean()) if len(vectors) else 0.0
+    # So long a vector is that of a cell that fires three times as much one way as the other.
+    return float((vectors > 0.5).mean()) if len(vectors) else 0.0

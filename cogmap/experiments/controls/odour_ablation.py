@@ -18,13 +18,10 @@ from cogmap.plots import plot_cases
 
 PLACES = ((-1.5, -1.0), (1.6, 0.9), (1.2, -1.1), (-1.3, 1.0))
 """Of the sources in m, added one by one; the first three are those of every room."""
-NOISE = (0.0, 0.1, 0.2, 0.3)
-USUAL_SOURCES, USUAL_NOISE = 3, 0.1
-LABELS = {"sources": "odour sources", "noise": "noise of the nose"}
 
 
 @experiment(room="furnished", views=17_000, takes=("motion", "camera", "body", "map"))
-def odour_ablation(conditions: Conditions) -> Result:
+def odour_ablation(conditions: Conditions, *, noises: tuple[float, ...] = (0.0, 0.1, 0.2, 0.3)) -> Result:
     """Learn the same views with one to four odour sources, and with a nose of no noise to one of 30 %.
 
     With few sources a smell can mean several places. `position_median_m` is read from the recalled odour,
@@ -33,8 +30,10 @@ def odour_ablation(conditions: Conditions) -> Result:
     cells with exactly one field.
     """
     trial = Trial.of(conditions)
-    cases = [(count, USUAL_NOISE) for count in range(1, len(PLACES) + 1)]
-    cases += [(USUAL_SOURCES, noise) for noise in NOISE if noise != USUAL_NOISE]
+    # The usual nose has a noise of 10 %, the usual room three sources.
+    cases = [(count, 0.1) for count in range(1, len(PLACES) + 1)]
+    cases += [(3, noise) for noise in noises if noise != 0.1]
+    labels = {"sources": "odour sources", "noise": "noise of the nose"}
     metrics = {f"{count}_sources_{noise:g}_noise": _learn(trial, count, noise) for count, noise in cases}
     table = pd.DataFrame(
         [
@@ -45,7 +44,7 @@ def odour_ablation(conditions: Conditions) -> Result:
     return Result(
         metrics=metrics,
         tables={"cases": table},
-        figures={"sources": plot_cases(table, LABELS)},
+        figures={"sources": plot_cases(table, labels)},
         captions={
             "sources": "What the cells tell of place with more sources of smell, and with a noisier nose",
         },

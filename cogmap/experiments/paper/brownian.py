@@ -26,26 +26,22 @@ from cogmap.plots import (
 )
 from cogmap.shape import LandmarkIsomap
 
-COMPONENTS = 4
-"""Least number of dimensions in which R²×S¹ lies without crossing itself or being folded."""
-HELD_OUT = 0.1
-NEIGHBOURS = 10
-"""In the embedding, from whose poses that of a view is read."""
-
 
 @experiment(room="furnished", views=17_000)
-def brownian(conditions: Conditions) -> Result:
+def brownian(conditions: Conditions, *, components: int = 4, held_out: float = 0.1) -> Result:
     """Figs. 3 and 6: find the solid torus, and read poses off four coordinates of it.
 
     One view in ten is held out of the embedding and placed in it afterwards; `position_r2` is the share of
     the variance of x and y of these views that the poses of their ten nearest others in the embedding tell.
+    Four `components` are the least number of dimensions in which R²×S¹ lies without crossing itself or being
+    folded; `held_out` is a share of the views.
     """
     walk = conditions.explore(Brownian(), Camera.perspective())
     poses = poses_of(walk)
     found = view_manifold(walk.views, conditions)
     order = np.random.default_rng(conditions.seed).permutation(len(poses))
-    held, train = np.split(order, [round(HELD_OUT * len(poses))])
-    isomap = LandmarkIsomap(COMPONENTS, metric="cosine", averaging=True, seed=conditions.seed)
+    held, train = np.split(order, [round(held_out * len(poses))])
+    isomap = LandmarkIsomap(components, metric="cosine", averaging=True, seed=conditions.seed)
     read = _read_poses(
         isomap.fit_transform(found.words[train]), poses[train], isomap.transform(found.words[held])
     )
@@ -95,9 +91,10 @@ def _read_poses(
     train: Float[np.ndarray, "train components"],
     poses: Float[np.ndarray, "train 3"],
     held: Float[np.ndarray, "views components"],
+    neighbours: int = 10,
 ) -> _Read:
     """Mean pose of the nearest views in the embedding, weighted by 1 / distance."""
     target = np.column_stack([poses[:, :2], np.cos(poses[:, 2]), np.sin(poses[:, 2])])
-    reader = KNeighborsRegressor(NEIGHBOURS, weights="distance").fit(train, target)
+    reader = KNeighborsRegressor(neighbours, weights="distance").fit(train, target)
     x, y, cosine, sine = reader.predict(held).T
     return _Read(np.column_stack([x, y]), np.arctan2(sine, cosine))

@@ -20,9 +20,6 @@ from cogmap.plots import (
 )
 from cogmap.shape import height_coordinate
 
-COMPONENTS = 4
-"""Coordinates of the embedding that the two ends of the cylinder are looked for in."""
-
 
 @experiment(room="furnished", views=4_000)
 def cyclic(conditions: Conditions) -> Result:
@@ -34,7 +31,8 @@ def cyclic(conditions: Conditions) -> Result:
     walk = conditions.explore(Cyclic(), Camera.perspective())
     poses = poses_of(walk)
     found = view_manifold(walk.views, conditions)
-    height = height_coordinate(found.graph, found.embedding[:, :COMPONENTS], found.phase)
+    # The two ends of the cylinder show in four coordinates; later ones bend it.
+    height = height_coordinate(found.graph, found.embedding[:, :4], found.phase)
     along = _along_the_way(poses[:, :2])
     known = np.isfinite(height)
     near = quasi_metric(found.graph, poses, conditions.seed)

@@ -23,11 +23,6 @@ from cogmap.threads import one_thread
 from neurons.layers.retina import Retina
 
 ROOMS = {"white": "white_rectangle", "blue_wall": "blue_wall"}
-QUERIES = 2000
-"""Views of a fresh walk that are looked for."""
-COMPONENTS = 60
-"""Principal components that views are compared in."""
-BLOCK = 1024
 
 
 class _Seen(NamedTuple):
@@ -40,15 +35,15 @@ class _Seen(NamedTuple):
 
 
 @experiment(room="white_rectangle", views=17_000, any_room=False)
-def distinguishability(conditions: Conditions) -> Result:
+def distinguishability(conditions: Conditions, *, queries: int = 2000) -> Result:
     """Count how often the view most like a query was taken from about the opposite pose.
 
     A white rectangle with nothing in it looks the same from (x, y, θ) and from (−x, −y, θ + π); with one wall
     blue it does not. A query is confused when its nearest view lies nearer to the opposite pose than to its
     own. Strips are compared as the retina leaves them, in their principal components; the Betti numbers are
-    those of the same codes.
+    those of the same codes. `queries` are views of a fresh walk.
     """
-    seen = {name: _look(conditions, Arena.load(room)) for name, room in ROOMS.items()}
+    seen = {name: _look(conditions, Arena.load(room), queries) for name, room in ROOMS.items()}
     return Result(
         metrics={
             **{f"confusion_{name}": float(item.nearest["confused"].mean()) for name, item in seen.items()},
@@ -73,11 +68,11 @@ def distinguishability(conditions: Conditions) -> Result:
     )
 
 
-def _look(conditions: Conditions, room: Arena) -> _Seen:
+def _look(conditions: Conditions, room: Arena, queries: int) -> _Seen:
     strips = Camera.panoramic()
     here = replace(conditions, room=room)
     walk = here.explore(Brownian(), strips)
-    fresh = here.explore(Brownian(), strips, views=min(QUERIES, conditions.views), fresh=True)
+    fresh = here.explore(Brownian(), strips, views=min(queries, conditions.views), fresh=True)
     train, test = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), conditions.seed)
     nearest = poses_of(walk)[nearest_points(train, 1, queries=test).indices[:, 0]]
     poses = poses_of(fresh)
@@ -108,7 +103,7 @@ def _apart(ours: Float[np.ndarray, "views 3"], theirs: Float[np.ndarray, "views 
 
 
 def retina_codes(
-    train: np.ndarray, test: np.ndarray, seed: int
+    train: np.ndarray, test: np.ndarray, seed: int, *, components: int = 60, batch: int = 1024
 ) -> tuple[Float[np.ndarray, "views components"], Float[np.ndarray, "queries components"]]:
     """Give the principal components, of the known views, of what the retina makes of strips."""
     retina = Retina(*train.shape[1:3])
@@ -116,11 +111,11 @@ def retina_codes(
         sensed = [
             np.concatenate(
                 [
-                    retina(torch.from_numpy(views[first : first + BLOCK])).numpy()
-                    for first in range(0, len(views), BLOCK)
+                    retina(torch.from_numpy(views[first : first + batch])).numpy()
+                    for first in range(0, len(views), batch)
                 ]
             )
             for views in (train, test)
         ]
-        pca = PCA(min(COMPONENTS, len(train)), random_state=seed)
+        pca = PCA(min(components, len(train)), random_state=seed)
         return pca.fit_transform(sensed[0]), pca.transform(sensed[1])

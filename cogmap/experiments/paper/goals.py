@@ -21,19 +21,6 @@ from cogmap.graph import nearest_points, neighbour_graph
 from cogmap.plots import plot_cell_types, plot_examples, plot_goals
 from cogmap.shape import betti, circular_coordinate
 
-ACROSS, ALONG = 4, 3
-"""Goals over the width and the depth of the room: the goal is moved from one to the next."""
-ORIENTATIONS = 36
-"""Cells, each a direction of the reference ring."""
-CONCENTRATION = 5.0
-"""κ of the von Mises tuning of an orientation cell, that of the map's heading cells."""
-REACH = 0.125
-"""Nearest views that a view of the reference ring is joined to, as a share of the ring: those of one stay are
-far apart, those of several stays alike, and fewer would leave gaps."""
-LANDMARKS = 100, 50
-"""On which its shape is measured."""
-FEWEST = 100
-"""Views of the walk to a goal at least."""
 PEAK = 20.0
 """Rate on the ring itself, Hz."""
 
@@ -53,7 +40,9 @@ def goals(conditions: Conditions) -> Result:
     3.1°; with 6,000, some 110, nearest neighbours on the next ring look elsewhere too often, and it was 40°.
     """
     camera = Camera.panoramic()
-    visits = [_visit(conditions, goal, camera) for goal in goal_grid(conditions.room)]
+    # As many views a goal as if all of the grid could be reached.
+    count = max(100, conditions.views // 12)
+    visits = [_visit(conditions, goal, camera, count) for goal in goal_grid(conditions.room)]
     fresh = conditions.explore(Brownian(), camera, fresh=True)
     seen = np.concatenate([np.asarray(visit.views) for visit in visits])
     poses = np.concatenate([poses_of(visit) for visit in visits])
@@ -82,7 +71,7 @@ def goals(conditions: Conditions) -> Result:
         ring_graph(codes[ring == order[0]]),
         "precomputed",
         max_dimension=1,
-        landmarks=LANDMARKS,
+        landmarks=(100, 50),
         seed=conditions.seed,
     )
     return Result(
@@ -112,10 +101,10 @@ def goals(conditions: Conditions) -> Result:
     )
 
 
-def goal_grid(room: Arena) -> Float[np.ndarray, "goals 2"]:
+def goal_grid(room: Arena, across: int = 4, along: int = 3) -> Float[np.ndarray, "goals 2"]:
     """Lay goals evenly over the bounds of the platform, without those that the body cannot reach."""
     x0, y0, x1, y1 = room.walkable.bounds
-    x, y = ((np.arange(count) + 0.5) / count for count in (ACROSS, ALONG))
+    x, y = ((np.arange(count) + 0.5) / count for count in (across, along))
     grid = np.stack(np.meshgrid(x0 + (x1 - x0) * x, y0 + (y1 - y0) * y), axis=2).reshape(-1, 2)
     free: np.ndarray = grid[room.is_free(grid, Disc().radius)]
     return free
@@ -131,9 +120,12 @@ def ring_distances(
     return np.stack(found, axis=1)
 
 
-def ring_graph(codes: Float[np.ndarray, "views components"]) -> sp.csr_array:
-    """Join the views of a ring with their nearest."""
-    return neighbour_graph(codes, max(1, round(REACH * len(codes))))
+def ring_graph(codes: Float[np.ndarray, "views components"], share: float = 0.125) -> sp.csr_array:
+    """Join the views of a ring with a share of it, those nearest to each.
+
+    The views of one stay are far apart, those of several stays alike, and fewer neighbours would leave gaps.
+    """
+    return neighbour_graph(codes, max(1, round(share * len(codes))))
 
 
 def spread_orientation(
@@ -160,18 +152,22 @@ def spread_orientation(
     return orientation
 
 
-def orientation_rates(orientation: Float[np.ndarray, "views"]) -> Float[np.ndarray, "views cells"]:
-    """Fire with how near the orientation (rad) of a view is to that of each cell; NaN is silence."""
-    preferred = 2 * np.pi * np.arange(ORIENTATIONS) / ORIENTATIONS
-    return PEAK * np.exp(CONCENTRATION * (np.cos(orientation[:, None] - preferred) - 1))
+def orientation_rates(
+    orientation: Float[np.ndarray, "views"], cells: int = 36, concentration: float = 5.0
+) -> Float[np.ndarray, "views cells"]:
+    """Fire with how near the orientation (rad) of a view is to that of each cell; NaN is silence.
+
+    The concentration κ of the von Mises tuning is that of the map's heading cells.
+    """
+    preferred = 2 * np.pi * np.arange(cells) / cells
+    return PEAK * np.exp(concentration * (np.cos(orientation[:, None] - preferred) - 1))
 
 
-def _visit(conditions: Conditions, goal: Float[np.ndarray, "2"], camera: Camera) -> Recording:
+def _visit(conditions: Conditions, goal: Float[np.ndarray, "2"], camera: Camera, count: int) -> Recording:
     """Climb the only odour of the room, from a goal, and keep the views at its maximum."""
     x, y = goal.tolist()
     scented = conditions.room.model_copy(update={"sources": [{"position": (x, y)}]})
     here = replace(conditions, room=scented)
-    count = max(FEWEST, conditions.views // (ACROSS * ALONG))
     walk = here.explore(Chemotaxis(), camera, views=count)
     stays = walk.attributes["walk"]["at_maximum"]
     rows = np.concatenate([np.arange(first, last) for first, last in stays])

@@ -17,22 +17,18 @@ from cogmap.features import BagOfWords
 from cogmap.navigation import Localiser, Location, image_codes
 from cogmap.plots import plot_localisation, plot_neighbours
 
-NOISE = 0.01
-"""Of the camera on the fresh walk, as a share of the brightest grey level."""
-QUERIES, NEIGHBOURS = 5, 5
-"""Of Table 3."""
-
 
 @experiment(room="furnished", views=17_000)
-def localisation(conditions: Conditions) -> Result:
+def localisation(conditions: Conditions, *, noise: float = 0.01) -> Result:
     """Table 3: place the views of a fresh walk, taken with a noisy camera, among remembered ones.
 
     Neighbours are found by bags of words, weights in blurred images; poses of the remembered views enter when
     all is done, as what the weights interpolate. `nearest_*` are the errors of the nearest view by words. A
-    view that shows no known word has no place, and `placed` is the share of those that have.
+    view that shows no known word has no place, and `placed` is the share of those that have. `noise` of the
+    camera on the fresh walk is a share of the brightest grey level.
     """
     walk = conditions.explore(Brownian(), Camera.perspective())
-    fresh = conditions.explore(Brownian(), Camera.perspective(noise=NOISE), fresh=True)
+    fresh = conditions.explore(Brownian(), Camera.perspective(noise=noise), fresh=True)
     words = BagOfWords(seed=conditions.seed, progress=conditions.progress)
     localiser = Localiser(words.fit_transform(walk.views), codes=image_codes(walk.views))
     found = localiser.locate(words.transform(fresh.views), codes=image_codes(fresh.views))
@@ -49,10 +45,11 @@ def localisation(conditions: Conditions) -> Result:
             **_errors("nearest_", nearest, truth),
         }
     )
-    shown = np.linspace(0, len(truth) - 1, min(QUERIES, len(truth))).astype(int)
-    neighbours = np.maximum(found.indices[shown, :NEIGHBOURS], 0)
+    # Table 3 has five queries with five neighbours each.
+    shown = np.linspace(0, len(truth) - 1, min(5, len(truth))).astype(int)
+    neighbours = np.maximum(found.indices[shown, :5], 0)
     return Result(
-        metrics={"noise": NOISE, "placed": float(placed.mean()), **_summary(table)},
+        metrics={"noise": noise, "placed": float(placed.mean()), **_summary(table)},
         tables={"views": table, "neighbours": _table_3(shown, neighbours, truth, train)},
         figures={
             "neighbours": plot_neighbours(

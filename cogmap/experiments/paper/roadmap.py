@@ -25,16 +25,8 @@ from cogmap.plots import plot_routes, plot_views
 
 PAIRS, APART = 200, 1.0
 """Starts and goals, and how far (m) these are from each other at least."""
-MARGIN = 0.03
-"""By how much (m) the explorer keeps farther from everything than the body that plans must."""
-TOUCH = 1e-3
-"""A body that reaches deeper (m) than this into an obstacle touches it."""
-ARRIVED = 0.3, np.deg2rad(40)
-"""How near (m, rad) the first and last view must be to start and goal for a plan to be a success."""
 SHOWN = 6
 """Routes that are drawn."""
-ON_THE_WAY = 9
-"""Images of one route that are drawn."""
 
 
 class _Plan(NamedTuple):
@@ -56,7 +48,7 @@ def roadmap(conditions: Conditions) -> Result:
     and the arena's own collision check; `prm_*` are left out when `ompl` is not installed, as `prm` tells.
     """
     room, body, around = conditions.room, Disc(), Camera.panoramic(120, 20)
-    walk = conditions.explore(Brownian(), around, body=Disc(radius=body.radius + MARGIN))
+    walk = conditions.explore(Brownian(), around, body=Disc(radius=body.radius + 0.03))
     poses = poses_of(walk)
     pairs = draw_pairs(room, body.radius, conditions.seed)
     started = time.perf_counter()
@@ -138,9 +130,10 @@ def _plan(
 
 
 def _arrives(path: Float[np.ndarray, "steps 3"]) -> bool:
+    """Tell whether the first and last view are within 0.3 m and 40° of start and goal."""
     off = path[[0, -1]] - path[[1, -2]]
     turn = np.abs(wrap_angle(off[:, 2]))
-    return bool((np.linalg.norm(off[:, :2], axis=1) <= ARRIVED[0]).all() and (turn <= ARRIVED[1]).all())
+    return bool((np.linalg.norm(off[:, :2], axis=1) <= 0.3).all() and (turn <= np.deg2rad(40)).all())
 
 
 def _scores(
@@ -150,7 +143,8 @@ def _scores(
 ) -> pd.DataFrame:
     """Tell of each path what it is worth; NaN where there is none."""
     solids = shapely.union_all([shapely.Polygon(solid.outline) for solid in room.solids])
-    reach = Disc().radius - TOUCH
+    # A body that reaches no more than 1 mm into an obstacle does not touch it: paths are rounded.
+    reach = Disc().radius - 1e-3
     rows = []
     for path, least in zip(paths, shortest, strict=True):
         row: dict[str, Any] = {"success": path is not None}
@@ -213,7 +207,7 @@ def _figures(
     figures = {"routes": plot_routes(room, paths)}
     if shown:
         route = shown[0][0].route
-        seen = route[np.linspace(0, len(route) - 1, min(ON_THE_WAY, len(route))).astype(int)]
+        seen = route[np.linspace(0, len(route) - 1, min(9, len(route))).astype(int)]
         views = Camera.perspective(160, 120).render(room, poses[seen])
         figures["images"] = plot_views(views, poses[seen], panoramic=False)
     return figures

@@ -23,12 +23,6 @@ from cogmap.experiments.result import Result
 from cogmap.plots import plot_barcodes, plot_compass, plot_embedding, plot_quasi_metric, plot_views
 from cogmap.threads import one_thread
 
-SHARES = {"training": 0.75, "validation": 0.15, "test": 0.1}
-"""The paper's split of 1,800 views: 1350, 270, 180."""
-SHOWN_TO_NETWORK = 1800
-DECAYS = (1e-6, 1e-4, 1e-2)
-"""Weight decays, of which the validation views choose one."""
-
 
 @experiment(room="furnished", views=5_000)
 def rotation(conditions: Conditions) -> Result:
@@ -77,7 +71,12 @@ class Fit(NamedTuple):
 
 
 def predict_headings(
-    coordinates: Float[np.ndarray, "views components"], headings: Float[np.ndarray, "views"], seed: int
+    coordinates: Float[np.ndarray, "views components"],
+    headings: Float[np.ndarray, "views"],
+    seed: int,
+    *,
+    most: int = 1800,
+    decays: tuple[float, ...] = (1e-6, 1e-4, 1e-2),
 ) -> Fit:
     """Train a small backpropagation network from coordinates to (cos θ, sin θ) on some of the views.
 
@@ -92,13 +91,19 @@ def predict_headings(
         rad.
     seed
         Draws views, split and first weights.
+    most
+        Views that the network is shown, of which the paper had 1350 for training, 270 to validate, 180 to
+        test; of fewer, the same shares.
+    decays
+        Weight decays, of which the validation views choose one.
 
     References
     ----------
     Rumelhart, Hinton & Williams (1986), Learning representations by back-propagating errors.
     """
-    chosen = np.random.default_rng(seed).permutation(len(headings))[:SHOWN_TO_NETWORK]
-    ends = np.rint(np.cumsum(list(SHARES.values())) * len(chosen)).astype(int)[:-1]
+    chosen = np.random.default_rng(seed).permutation(len(headings))[:most]
+    shares = {"training": 0.75, "validation": 0.15, "test": 0.1}
+    ends = np.rint(np.cumsum(list(shares.values())) * len(chosen)).astype(int)[:-1]
     training, validation, _ = np.split(chosen, ends)
     target = np.column_stack([np.cos(headings), np.sin(headings)])
 
@@ -121,11 +126,11 @@ def predict_headings(
                     random_state=seed,
                 ),
             ).fit(coordinates[training], target[training])
-            for decay in DECAYS
+            for decay in decays
         ]
         best = min(networks, key=lambda network: float(np.square(errors(network, validation)).mean()))
         missed = errors(best, chosen)
-    split = np.repeat(list(SHARES), np.diff([0, *ends, len(chosen)]))
+    split = np.repeat(list(shares), np.diff([0, *ends, len(chosen)]))
     table = pd.DataFrame(
         {"view": chosen, "split": split, "heading_rad": headings[chosen], "error_rad": missed}
     )

@@ -17,22 +17,17 @@ from cogmap.experiments.result import Result
 from cogmap.features import BagOfWords, cosine_distances, earth_mover_distances, pixel_distances
 from cogmap.plots import plot_likeness
 
-QUERIES = 500
-"""Views of a fresh walk whose neighbours are looked for."""
-NEIGHBOURS = 10
-SHOWN = 4
-"""Queries that are drawn with the views that each measure finds most like them."""
-
 
 @experiment(room="furnished", views=5_000)
-def similarity(conditions: Conditions) -> Result:
+def similarity(conditions: Conditions, *, queries: int = 500, neighbours: int = 10) -> Result:
     """Compare pixels, bags of words and moved light by the poses of the views that they call alike.
 
     Pixels and words are those of the perspective camera; light is moved around panoramic strips taken from
-    the same poses. Each measure looks for the ten views most like each of 500 views of a fresh walk.
+    the same poses. Each measure looks for the `neighbours` most like each of the `queries`,
+    views of a fresh walk.
     """
     ahead, around = Camera.perspective(), Camera.panoramic()
-    count = min(QUERIES, conditions.views)
+    count = min(queries, conditions.views)
     walk = conditions.explore(Brownian(), ahead)
     fresh = conditions.explore(Brownian(), ahead, views=count, fresh=True)
     poses, test = poses_of(walk), poses_of(fresh)
@@ -47,13 +42,13 @@ def similarity(conditions: Conditions) -> Result:
         ),
     }
     metrics: dict[str, Any] = {
-        name: pose_agreement(found, test, poses, neighbours=NEIGHBOURS)._asdict()
+        name: pose_agreement(found, test, poses, neighbours=neighbours)._asdict()
         for name, found in distances.items()
     }
     best = {name: found.argmin(axis=1) for name, found in distances.items()}
     best["pose"] = motion_distances(test, poses).argmin(axis=1)
     table = _nearest_table(best, test, poses)
-    shown = np.linspace(0, count - 1, min(SHOWN, count)).astype(int)
+    shown = np.linspace(0, count - 1, min(4, count)).astype(int)
     pictures = {"query": np.asarray(fresh[shown].views)} | {
         name: np.asarray(walk[found[shown]].views) for name, found in best.items()
     }
@@ -61,9 +56,7 @@ def similarity(conditions: Conditions) -> Result:
         metrics=metrics,
         tables={"nearest": table},
         figures={"likeness": plot_likeness(table, pictures)},
-        captions={
-            "likeness": "Which views each measure of likeness takes for the same",
-        },
+        captions={"likeness": "Which views each measure of likeness takes for the same"},
     )
 
 

@@ -15,9 +15,6 @@ from cogmap.features import BagOfWords
 from cogmap.graph.neighbour_graph import neighbourhood_means
 from cogmap.shape import Betti, LandmarkIsomap, betti, circular_coordinate, intrinsic_dimension
 
-COORDINATES = 10
-"""Of the embedding: more than the views have degrees of freedom, whatever these are."""
-
 
 class ViewManifold(NamedTuple):
     """What is known of a walk from its images alone."""
@@ -74,10 +71,13 @@ class ViewManifold(NamedTuple):
         return turn
 
 
-def view_manifold(views: Any, conditions: Conditions) -> ViewManifold:
-    """Find the shape of a set of images; no truth is needed and none is given."""
+def view_manifold(views: Any, conditions: Conditions, *, coordinates: int = 10) -> ViewManifold:
+    """Find the shape of a set of images; no truth is needed and none is given.
+
+    There are more `coordinates` than views have degrees of freedom, whatever these are.
+    """
     words = BagOfWords(seed=conditions.seed, progress=conditions.progress).fit_transform(views)
-    isomap = LandmarkIsomap(COORDINATES, metric="cosine", seed=conditions.seed).fit(words)
+    isomap = LandmarkIsomap(coordinates, metric="cosine", seed=conditions.seed).fit(words)
     return ViewManifold(
         words=words,
         graph=isomap.graph_,

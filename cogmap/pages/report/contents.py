@@ -20,8 +20,6 @@ from cogmap.experiments.registry import experiments
 from cogmap.experiments.result import CAPTIONS
 from cogmap.tables import as_rows, shown
 
-SWEPT = ("table.parquet", "table.csv")
-"""The table of a sweep, in the order in which they are tried."""
 LONGEST = 500
 """Rows of a sweep's table that are shown."""
 _Read = TypeVar("_Read")
@@ -77,11 +75,12 @@ def read_contents(folder: Path) -> Contents:
     CogmapError
         When it is no such folder, or a file in it is damaged.
     """
-    table = next((folder / name for name in SWEPT if (folder / name).is_file()), None)
+    swept = ("table.parquet", "table.csv")
+    table = next((folder / name for name in swept if (folder / name).is_file()), None)
     if not (folder / METRICS).is_file() and table is None:
         raise CogmapError(
             f"{folder} is not the result of a demo, an experiment or a sweep: it has neither {METRICS} nor "
-            f"{SWEPT[1]}; give a folder that one of them wrote"
+            f"{swept[1]}; give a folder that one of them wrote"
         )
     metrics, about, captions = (
         _read(folder / name, _record) if (folder / name).is_file() else {}
@@ -94,7 +93,7 @@ def read_contents(folder: Path) -> Contents:
     kind = "sweep" if table is not None else str(given.get("experiment", "demo"))
     place = f" in {given['arena']}" if "arena" in given else ""
     chosen = experiments().get(kind)
-    behind = [path for path in sorted(folder.glob("*.parquet")) if path.name not in SWEPT]
+    behind = [path for path in sorted(folder.glob("*.parquet")) if path.name not in swept]
     return Contents(
         title=f"{kind.replace('_', ' ').capitalize()}{place}",
         summary=chosen.summary if chosen else "",

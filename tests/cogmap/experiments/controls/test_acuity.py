@@ -3,8 +3,7 @@ import pytest
 
 from arena import Arena
 from cogmap.experiments.conditions import Conditions, poses_of
-from cogmap.experiments.controls.acuity import explore_at_acuity
-from cogmap.experiments.registry import run_experiment
+from cogmap.experiments.controls.acuity import acuity, explore_at_acuity
 
 
 def test_a_coarse_eye_has_large_pixels_on_the_same_walk() -> None:
@@ -20,11 +19,9 @@ def test_a_coarse_eye_has_large_pixels_on_the_same_walk() -> None:
     assert explore_at_acuity(conditions, 24).fresh.views.shape == (60, 16, 96, 3)
 
 
-def test_every_eye_and_number_of_charts_is_a_case(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cogmap.experiments.controls.acuity.COLUMNS", (12, 90))
-    monkeypatch.setattr("cogmap.experiments.controls.acuity.USUAL_COLUMNS", 90)
-    monkeypatch.setattr("cogmap.experiments.controls.acuity.CHARTS", (0.125, 1.0))
-    result = run_experiment("acuity", views=1600, map={"place_cells": 60})
+def test_every_eye_and_number_of_charts_is_a_case() -> None:
+    conditions = Conditions(Arena.load("furnished"), 1600, map={"place_cells": 60})
+    result = acuity(conditions, eyes=(12, 90), shares=(0.125,))
     cases = result.tables["cases"].set_index(["columns", "charts"])
     assert sorted(cases.index) == [(12, 533), (90, 67), (90, 533)]
     blurred, coarse, usual = (cases.loc[case] for case in [(12, 533), (90, 67), (90, 533)])

@@ -1,6 +1,6 @@
 import numpy as np
 
-from cogmap.experiments.paper.brownian import NEIGHBOURS, _read_poses
+from cogmap.experiments.paper.brownian import _read_poses
 
 
 def test_poses_are_the_means_of_the_ten_nearest_by_distance() -> None:
@@ -10,7 +10,7 @@ def test_poses_are_the_means_of_the_ten_nearest_by_distance() -> None:
     found = _read_poses(known, poses, held)
     for row, (position, heading) in enumerate(zip(found.positions, found.headings, strict=True)):
         apart = np.linalg.norm(known - held[row], axis=1)
-        nearest = np.argsort(apart)[:NEIGHBOURS]
+        nearest = np.argsort(apart)[:10]
         weights = 1 / apart[nearest]
         np.testing.assert_allclose(position, weights @ poses[nearest, :2] / weights.sum())
         np.testing.assert_allclose(heading, np.angle(weights @ np.exp(1j * poses[nearest, 2])))
