@@ -13,6 +13,8 @@ from jaxtyping import UInt8, UInt64
 from numcodecs import Blosc
 from zarr.codecs import BloscCodec
 
+from arena.atomic import atomic_write
+
 SHARD = 256
 """Views in a file."""
 COMPRESSOR: Literal["lz4"] = "lz4"
@@ -92,14 +94,8 @@ def _write(path: Path, images: np.ndarray) -> None:
     images = np.ascontiguousarray(images)
     frames: list[bytes] = [blosc.encode(image) for image in images]
     index = _index(np.array([len(frame) for frame in frames], "<u8")).tobytes()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    partial = path.with_name(f"{path.name}.{os.getpid()}.partial")
-    try:
-        with partial.open("wb") as stream:
-            stream.writelines([*frames, index, _checksum(index)])
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
+    with atomic_write(path) as fresh, fresh.open("wb") as stream:
+        stream.writelines([*frames, index, _checksum(index)])
 
 
 def _index(sizes: UInt64[np.ndarray, " images"]) -> UInt64[np.ndarray, "shard 2"]:

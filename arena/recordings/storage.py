@@ -1,7 +1,5 @@
 """Storage of a recording on disk: a zarr 3 group, the views in shards."""
 
-import os
-import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,6 +9,7 @@ import numpy as np
 import zarr
 from jaxtyping import Int, UInt8
 
+from arena.atomic import atomic_write
 from arena.errors import ArenaError
 from arena.recordings.sharding import SHARD, Writer, codec, file, is_complete, shard_writer, shards
 
@@ -42,19 +41,9 @@ def new_folder(path: Path) -> Iterator[Path]:
     ArenaError
         When there is something at `path`, or the folder cannot be written.
     """
-    if path.exists() or path.is_symlink():
-        raise ArenaError(
-            f"{path} exists already and is left as it is; choose another path or remove it first"
-        )
-    folder = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    try:
-        folder.mkdir(parents=True)
+    with atomic_write(path, ArenaError, overwrite=False) as folder:
+        folder.mkdir()
         yield folder
-        folder.rename(path)
-    except OSError as error:
-        raise ArenaError(f"cannot write {path}: {error.strerror or error}") from None
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def lay_out(
@@ -71,9 +60,7 @@ def lay_out(
 
 @contextmanager
 def writable_views(path: Path) -> Iterator[Writer]:
-    """Write shards of views, after clearing away what a kill has left of one; see `sharding.shard_writer`."""
-    for stray in (path / "views").rglob("*.partial"):
-        stray.unlink()
+    """Write shards of views; see `sharding.shard_writer`."""
     with shard_writer(path / "views") as writer:
         yield writer
 

@@ -9,7 +9,7 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
-from cogmap.atomic import atomic_write, check_absent
+from cogmap.atomic import atomic_write
 from cogmap.errors import CogmapError
 
 VERSION = 3
@@ -20,9 +20,8 @@ def write_map(
     path: Path, weights: Mapping[str, Tensor], settings: Mapping[str, Any], learnt: Mapping[str, Any]
 ) -> None:
     """Fill a new folder under another name and give it the right one at the end."""
-    check_absent(path)
     described = {"version": VERSION, "settings": dict(settings), "learnt": dict(learnt)}
-    with atomic_write(path) as folder:
+    with atomic_write(path, overwrite=False) as folder:
         folder.mkdir()
         save_file({name: weight.contiguous() for name, weight in weights.items()}, folder / _WEIGHTS)
         (folder / _SETTINGS).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pandas as pd
@@ -107,9 +106,7 @@ def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
         table.to_csv(fresh, index=False)
     with ledger.replacing(ledger.folder / "table.parquet") as fresh:
         table.to_parquet(fresh, index=False)
-    figures, fresh = ledger.folder / "figures", ledger.work / "figures"
-    with disk_errors(ledger.folder):
-        shutil.rmtree(fresh, ignore_errors=True)
+    with ledger.replacing(ledger.folder / "figures") as fresh:
         fresh.mkdir()
         for name in statistics_of(table, plan.varied):
             figure = plot_trend(
@@ -121,7 +118,7 @@ def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
                 joined=plan.sample is None,
             )
             figure.savefig(fresh / f"{name}.png")
-        shutil.rmtree(figures, ignore_errors=True)
-        fresh.rename(figures)
-        (ledger.folder / PLAN).write_text(plan.to_toml(), encoding="utf-8")
+    with ledger.replacing(ledger.folder / PLAN) as fresh:
+        fresh.write_text(plan.to_toml(), encoding="utf-8")
+    with disk_errors(ledger.folder):
         write_provenance(ledger.folder, ("sweep", PLAN), None)

@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 from pyarrow import ArrowException
 
+from arena.atomic import recover
 from cogmap.atomic import METRICS
 from cogmap.errors import CogmapError
 from cogmap.experiments.provenance import PROVENANCE
@@ -77,6 +78,7 @@ def read_contents(folder: Path) -> Contents:
     CogmapError
         When it is no such folder, or a file in it is damaged.
     """
+    recover(folder)
     table = next((folder / name for name in SWEPT if (folder / name).is_file()), None)
     if not (folder / METRICS).is_file() and table is None:
         raise CogmapError(
