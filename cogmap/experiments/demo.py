@@ -167,7 +167,10 @@ def _score(room: Arena, learnt: Outing, fresh: Outing) -> dict[str, float]:
     """Every figure of `score`, and the position error of the raw nose read by the same decoder."""
     reachable = room.sample_free(20_000, Disc().radius, np.random.default_rng(0))
     raw = position_errors(
-        np.log(learnt.walk.odours), learnt.poses[:, :2], np.log(fresh.walk.odours), fresh.poses[:, :2]
+        np.log(learnt.walk.require("odours")),
+        learnt.poses[:, :2],
+        np.log(fresh.walk.require("odours")),
+        fresh.poses[:, :2],
     )
     return {
         **score(fresh.activity, fresh.poses, train=(learnt.activity, learnt.poses), reachable=reachable),
@@ -184,7 +187,8 @@ def _draw(folder: Path, room: Arena, learnt: Outing, fresh: Outing, bars: dict[s
     aligned = headings + heading_errors(rates.phase, headings, frame)
     sheet = np.linspace(0, len(learnt.walk) - 1, 18).astype(int)
     known = learnt.poses[:, :2]
-    smelt = decode_positions(np.log(learnt.walk.odours), known, np.log(fresh.walk.odours))
+    smells = [np.log(outing.walk.require("odours")) for outing in (learnt, fresh)]
+    smelt = decode_positions(smells[0], known, smells[1])
     drawings = {
         "room": plot_room(room, learnt.poses),
         "views": plot_views(np.asarray(learnt.walk[sheet].views), learnt.poses[sheet]),

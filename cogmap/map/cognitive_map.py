@@ -93,7 +93,7 @@ class CognitiveMap:
         self.epoch = epoch
         self.seed = seed
 
-    def fit(self, views: Any, odours: ArrayLike, *, progress: bool = False) -> CognitiveMap:
+    def fit(self, views: Any, odours: ArrayLike | None, *, progress: bool = False) -> CognitiveMap:
         """Learn a map from scratch, as epochs of `partial_fit` over the views.
 
         Their order is random in every epoch but that of the metric map, which takes them as they are given.
@@ -134,7 +134,7 @@ class CognitiveMap:
                 bar.refresh()
         return self
 
-    def partial_fit(self, views: Any, odours: ArrayLike, *, jump: bool = False) -> CognitiveMap:
+    def partial_fit(self, views: Any, odours: ArrayLike | None, *, jump: bool = False) -> CognitiveMap:
         """Learn from the next views of a stream.
 
         Time and memory per view do not depend on how many came before. See `neurons.network.Layers` for what

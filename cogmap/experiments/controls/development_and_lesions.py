@@ -70,7 +70,7 @@ def development_and_lesions(conditions: Conditions) -> Result:
 
     growing, growth, begun = with_blank_afferents(cmap), [], 0
     for seen in [*(count for count in SEEN if count < len(walk)), len(walk)]:
-        growing.partial_fit(walk.views[begun:seen], walk.odours[begun:seen])
+        growing.partial_fit(walk.views[begun:seen], walk.require("odours")[begun:seen])
         begun = seen
         growth.append({"views": seen, **_figures(truth, _driven(growing, views))})
     order = np.random.default_rng(conditions.seed).permutation(cmap.charts)

@@ -37,7 +37,7 @@ def fusion(conditions: Conditions) -> Result:
     truth = GroundTruth.of(conditions.room, poses_of(walk), poses_of(fresh))
     train, test = (perceive(cmap, item.views) for item in (walk, fresh))
     codes = [cmap.encode(item.views) for item in (walk, fresh)]
-    smells = [np.log(item.odours) for item in (walk, fresh)]
+    smells = [np.log(item.require("odours")) for item in (walk, fresh)]
     rates = {
         "vision only": competing_cells(*codes, seed=conditions.seed)[0],
         "olfaction only": competing_cells(*smells, seed=conditions.seed)[0],
