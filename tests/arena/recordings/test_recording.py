@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from arena.errors import ArenaError
 from arena.recordings import storage
-from arena.recordings.recording import Recording
+from arena.recordings.recording import Recording, _check
 from arena.recordings.sharding import SHARD
 from arena.recordings.storage import StoredViews
 
@@ -327,7 +327,7 @@ def test_views_and_times_are_enough(tmp_path: Path) -> None:
 )
 def test_signals_that_do_not_fit(name: str, values: np.ndarray) -> None:
     with pytest.raises(ArenaError, match=f"signals/{name} "):
-        recording(4, signals={name: values})
+        _check(np.zeros((4, 2, 2, 3), np.uint8), {"times": np.arange(4.0), f"signals/{name}": values})
 
 
 @pytest.mark.parametrize("arrays", [[], ["odours", "times"], ["times", "../x"], ["times", 7], 7, None])
