@@ -84,7 +84,6 @@ def explore(
     if (views is not None and views < 1) or seed < 0:
         raise ArenaError(f"views is {views} and seed is {seed}; give at least one view and no negative seed")
     attributes = {
-        "version": storage.VERSION,
         "arena": arena.to_toml(),
         "camera": _parameters(camera),
         "motion": _parameters(motion),
@@ -101,9 +100,9 @@ def explore(
             return Recording.open(path)
     walk_rng, nose_rng = (np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(2))
     walk = motion.walk(arena, body, views, walk_rng)
-    columns = {
-        "odours": nose.smell(arena.odours.concentration(walk.poses[:, :2]), walk.times, nose_rng),
+    columns: dict[str, Any] = {
         "times": walk.times,
+        "odours": nose.smell(arena.odours.concentration(walk.poses[:, :2]), walk.times, nose_rng),
         "poses": walk.poses,
     }
     attributes |= {"walk": dict(walk.notes), "origin": origin()}

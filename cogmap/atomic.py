@@ -1,11 +1,9 @@
-"""Atomic writes: files and folders that appear under their name only when they are whole."""
+"""Atomic writes: results and maps that appear under their name only when they are whole."""
 
 from __future__ import annotations
 
-import os
-import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 from cogmap.errors import CogmapError
@@ -14,36 +12,19 @@ METRICS = "metrics.json"
 """What every finished experiment leaves, and what marks a folder as one."""
 
 
-@contextmanager
-def atomic_write(path: Path) -> Iterator[Path]:
-    """Give another path, for a file or a folder that takes the name of `path` at the end.
+def atomic_write(path: Path, *, overwrite: bool = True) -> AbstractContextManager[Path]:
+    """Write as `arena.atomic.atomic_write` does, and raise a `CogmapError` when it cannot be done."""
+    # Only when something is written: a map that grows in memory does without the arena and its compiler.
+    from arena import atomic  # noqa: PLC0415
 
-    A file that is there already is replaced, a failure changes nothing.
-
-    Raises
-    ------
-    CogmapError
-        When it cannot be written.
-    """
-    partial = path.with_name(f".{path.stem}.{os.getpid()}.partial{path.suffix}")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        yield partial
-        partial.replace(path)
-    except OSError as error:
-        raise CogmapError(f"cannot write {path}: {error.strerror or error}") from None
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
-        with suppress(OSError):
-            partial.unlink()
+    return atomic.atomic_write(path, CogmapError, overwrite=overwrite)
 
 
 def check_absent(path: Path) -> None:
     """Raise when there is something at a path already."""
-    if path.exists() or path.is_symlink():
-        raise CogmapError(
-            f"{path} exists already and is left as it is; choose another path or remove it first"
-        )
+    from arena import atomic  # noqa: PLC0415
+
+    atomic.check_absent(path, CogmapError)
 
 
 def check_replaceable(out: Path) -> None:
@@ -64,16 +45,6 @@ def result_folder(out: Path) -> Iterator[Path]:
         When `out` holds anything but an earlier result, or cannot be written.
     """
     check_replaceable(out)
-    folder = out.with_name(f".{out.name}.{os.getpid()}.partial")
-    old = out.with_name(f".{out.name}.{os.getpid()}.old")
-    try:
-        folder.mkdir(parents=True)
+    with atomic_write(out) as folder:
+        folder.mkdir()
         yield folder
-        if out.exists():
-            out.rename(old)
-        folder.rename(out)
-    except OSError as error:
-        raise CogmapError(f"cannot write {out}: {error.strerror or error}") from None
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-        shutil.rmtree(old, ignore_errors=True)

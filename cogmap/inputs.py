@@ -38,9 +38,13 @@ def check_views(views: object, shape: tuple[int, ...] | None = None) -> None:
 
 
 def log_odours(
-    odours: ArrayLike, *, views: int | None = None, odorants: int | None = None
+    odours: ArrayLike | None, *, views: int | None = None, odorants: int | None = None
 ) -> Float32[np.ndarray, "views odorants"]:
     """Take the logarithm of concentrations, (views, odorants), all finite and > 0."""
+    if odours is None:
+        raise CogmapError(
+            "there are no odours, and a map learns places from them; use a recording that has them"
+        )
     array = np.asarray(odours)
     if array.ndim != 2 or array.shape[1] < 1 or array.dtype.kind not in "fiu":
         raise CogmapError(
@@ -62,7 +66,7 @@ def log_odours(
     return np.log(array.astype(np.float32))
 
 
-def check_array(name: str, array: np.ndarray, shape: tuple[int | None, ...]) -> None:
+def check_array(name: str, array: np.ndarray | None, shape: tuple[int | None, ...]) -> None:
     """Refuse an array that is not of this shape or not finite; None stands for any length but zero.
 
     Raises
@@ -70,6 +74,8 @@ def check_array(name: str, array: np.ndarray, shape: tuple[int | None, ...]) -> 
     CogmapError
         With the name, the shape given and the shape expected.
     """
+    if array is None:
+        raise CogmapError(f"there are no {name}; use a recording that has them")
     fits = array.ndim == len(shape) and all(
         given > 0 if wanted is None else given == wanted
         for given, wanted in zip(array.shape, shape, strict=True)

@@ -1,4 +1,4 @@
-"""The recording that an exploration leaves: views, smells, times and (for scoring only) poses."""
+"""The recording that an exploration leaves: views and times, and what else was sensed or is known."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -6,30 +6,34 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import zarr
-from jaxtyping import Bool, Float32, Float64, Int, UInt8
+from jaxtyping import Bool, Float32, Float64, Int, Shaped, UInt8
 
 from arena.errors import ArenaError
 from arena.recordings import storage
 from arena.recordings.sharding import shards
+from arena.recordings.storage import StoredViews
 
 Images = UInt8[np.ndarray, "views height width 3"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Recording:
-    """Views and smells of one exploration, in the order in which they were met.
+    """Views of one exploration, in the order in which they were met, and what was recorded with them.
 
     Parameters
     ----------
     views
-        RGB images; when opened from disk a lazy zarr array, whose slices give arrays.
-    odours
-        Smelt concentrations, all > 0.
+        RGB images; when opened from disk they stay there, and slices, masks and indices give arrays.
     times
         s.
+    odours
+        Smelt concentrations, all > 0. None when nothing was smelt.
     poses
-        x, y (m) and heading (rad): ground truth, for scoring only. None when taken away.
+        x, y (m) and heading (rad): ground truth, for scoring only. None when unknown or taken away.
+    joints
+        Angles of the body's joints (rad). None for a body without any.
+    signals
+        Whatever else has one row of numbers a view, by its name; a name is one word, as in Python.
     attributes
         Where it came from, as far as JSON can say; `explore` puts the room, the seed and all parameters here.
 
@@ -39,10 +43,12 @@ class Recording:
         When the arrays do not fit each other or are not finite.
     """
 
-    views: Images | zarr.Array[Any]
-    odours: Float32[np.ndarray, "views odorants"]
+    views: Images | StoredViews
     times: Float64[np.ndarray, " views"]
+    odours: Float32[np.ndarray, "views odorants"] | None = None
     poses: Float64[np.ndarray, "views 3"] | None = None
+    joints: Float64[np.ndarray, "views joints"] | None = None
+    signals: Mapping[str, Shaped[np.ndarray, "views ..."]] = field(default_factory=dict)
     attributes: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -55,16 +61,22 @@ class Recording:
         self, key: slice | Bool[np.ndarray, " views"] | Int[np.ndarray, " chosen"]
     ) -> "Recording":
         """Choose views by a slice, a mask or indices; the result is in memory."""
-        views = self.views
-        return replace(
-            self,
-            views=views[key]
-            if isinstance(views, np.ndarray)
-            else storage.read(views, np.arange(len(self))[key]),
-            odours=self.odours[key],
-            times=self.times[key],
-            poses=None if self.poses is None else self.poses[key],
-        )
+        chosen = {name: values[key] for name, values in self._columns.items()}
+        return replace(self, views=self.views[key], **_fields(chosen))
+
+    def require(self, name: str) -> np.ndarray:
+        """Give an array that a recording may lack: `odours`, `poses`, `joints` or `signals/NAME`.
+
+        Raises
+        ------
+        ArenaError
+            When this one lacks it.
+        """
+        if name not in self._columns:
+            raise ArenaError(
+                f"this recording has no {name}, only views, {', '.join(self._columns)}; use one that has"
+            )
+        return self._columns[name]
 
     def without_truth(self) -> "Recording":
         """Take the poses away."""
@@ -105,33 +117,54 @@ class Recording:
                 f"{path} is half-written: {present} of its {count} views are there; "
                 "the same `explore` command goes on where it stopped"
             )
-        return cls(views=views, **columns, attributes=attributes)
+        return cls(views=views, **_fields(columns), attributes=attributes)
 
     @property
     def _columns(self) -> dict[str, np.ndarray]:
-        columns = {"odours": self.odours, "times": self.times, "poses": self.poses}
-        return {name: values for name, values in columns.items() if values is not None}
+        """All arrays that are there but the views, by their names on disk."""
+        columns = {name: getattr(self, name) for name in ("times", "odours", "poses", "joints")}
+        signals = {f"signals/{name}": values for name, values in self.signals.items()}
+        return {name: values for name, values in columns.items() if values is not None} | signals
 
 
-def _check(views: np.ndarray | zarr.Array[Any], columns: Mapping[str, np.ndarray]) -> None:
+def _fields(columns: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    """Turn arrays by their names on disk into the fields of a recording."""
+    signals = {name.removeprefix("signals/"): values for name, values in columns.items() if "/" in name}
+    return {**{name: values for name, values in columns.items() if "/" not in name}, "signals": signals}
+
+
+def _check(views: np.ndarray | StoredViews, columns: Mapping[str, np.ndarray]) -> None:
     """Raise an `ArenaError` unless there is one sound row a view."""
     count = views.shape[0]
-    odorants = columns["odours"].shape[-1:]
-    wanted = {
-        "odours": ("float32", (count, *odorants)),
+    # None stands for any length.
+    wanted: dict[str, tuple[str, tuple[int | None, ...]]] = {
+        "views": ("uint8", (count, None, None, 3)),
         "times": ("float64", (count,)),
+        "odours": ("float32", (count, None)),
         "poses": ("float64", (count, 3)),
+        "joints": ("float64", (count, None)),
     }
-    arrays = {"views": views, **columns}
-    for name, array in arrays.items():
-        dtype, shape = wanted.get(name, ("uint8", (count, *views.shape[1:3], 3)))
-        if array.dtype != dtype or array.shape != shape:
+    for name, array in {"times": np.empty(0), "views": views, **columns}.items():
+        kind, _, signal = name.rpartition("/")
+        if kind == "signals" and signal.isidentifier() and array.dtype.kind in "biuf":
+            dtype, shape = str(array.dtype), (count, *array.shape[1:])
+        elif name in wanted:
+            dtype, shape = wanted[name]
+        else:
+            raise ArenaError(
+                f"{name} is {array.dtype} of shape {array.shape}; signals are numbers, named by one word"
+            )
+        fits = len(shape) == array.ndim and all(
+            length in {None, given} for length, given in zip(shape, array.shape, strict=True)
+        )
+        if array.dtype != dtype or not fits:
+            told = ", ".join("any" if length is None else str(length) for length in shape)
             raise ArenaError(
                 f"{name} is {array.dtype} of shape {array.shape}; "
-                f"for {count} views it must be {dtype} of shape {shape}"
+                f"for {count} views it must be {dtype} of shape ({told})"
             )
     for name, values in columns.items():
         if not np.isfinite(values).all():
             raise ArenaError(f"{name} has NaN or infinite values; leave those views out")
-    if not (columns["odours"] > 0).all():
+    if not (columns.get("odours", np.ones(0)) > 0).all():
         raise ArenaError("odours has values that are not positive; a concentration must be > 0")

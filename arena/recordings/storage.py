@@ -1,7 +1,5 @@
-"""Storage of a recording on disk: a zarr 3 group, the views in shards."""
+"""Storage of a recording on disk: a zarr 3 group of named arrays with checksums, the views in shards."""
 
-import os
-import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -9,25 +7,83 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import zarr
-from jaxtyping import Int, UInt8
+from jaxtyping import UInt8
+from zarr.codecs import Crc32cCodec
 
+from arena.atomic import atomic_write
 from arena.errors import ArenaError
-from arena.recordings.sharding import SHARD, Writer, codec, file, is_complete, shard_writer, shards
+from arena.recordings.sharding import SHARD, Writer, codecs, file, is_complete, shard_writer, shards
 
-VERSION = 2
+VERSION = 3
 """Of the layout."""
 
-_COLUMNS = ("odours", "times", "poses")
 # What zarr has been seen to raise on damaged metadata and chunks.
 _DAMAGE = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError)
+
+
+class StoredViews:
+    """Views on disk, indexed like a numpy array: what is asked for is read and compared with its checksum."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._array = _opened(folder)
+        self.shape: tuple[int, ...] = self._array.shape
+        self.dtype = self._array.dtype
+        self.ndim = len(self.shape)
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:  # noqa: FBT001
+        return np.asarray(self[:], dtype)
+
+    def __getitem__(self, key: Any) -> UInt8[np.ndarray, "..."]:
+        """Read views.
+
+        Raises
+        ------
+        ArenaError
+            When they are no longer what was written.
+        """
+        keys = key if isinstance(key, tuple) else (key,)
+        rows, *within = (slice(None), *keys) if keys[0] is Ellipsis else keys
+        index = np.arange(len(self))[rows]
+        chosen = index.ravel()
+        images = np.empty((len(chosen), *self.shape[1:]), np.uint8)
+        # One slice a shard: zarr's own indexing by arrays takes 10 ms a view.
+        for shard in np.unique(chosen // SHARD):
+            here = np.flatnonzero(chosen // SHARD == shard)
+            images[here] = self._read(shards(len(self))[shard], chosen[here])
+        found = images.reshape(*index.shape, *self.shape[1:])
+        return np.asarray(found[(slice(None),) * index.ndim + tuple(within)])
+
+    def missing(self) -> list[slice]:
+        """Which views are not there or cannot be read, by shards."""
+        return [rows for rows in shards(len(self)) if not self._is_complete(rows)]
+
+    def _is_complete(self, rows: slice) -> bool:
+        return is_complete(file(self._folder, rows), rows.stop - rows.start)
+
+    def _read(self, shard: slice, chosen: np.ndarray) -> np.ndarray:
+        first = chosen.min()
+        try:
+            if not self._is_complete(shard):  # for zarr, views of a shard that is gone are black
+                raise ValueError("the file is not whole")
+            found = np.asarray(self._array[first : chosen.max() + 1])
+        except _DAMAGE as error:
+            raise ArenaError(
+                f"{file(self._folder, shard)} is damaged ({_first_line(error)}); remove it, and the same "
+                "`explore` command makes its views again"
+            ) from None
+        return np.asarray(found[chosen - first])
 
 
 class Stored(NamedTuple):
     """What a folder holds."""
 
-    views: zarr.Array[Any]
+    views: StoredViews
     columns: dict[str, np.ndarray]
-    """`odours`, `times` and, unless they were taken away, `poses`."""
+    """All other arrays by their names in the folder."""
     attributes: dict[str, Any]
     missing: list[slice]
     """Which views are not there or cannot be read, by shards."""
@@ -42,38 +98,27 @@ def new_folder(path: Path) -> Iterator[Path]:
     ArenaError
         When there is something at `path`, or the folder cannot be written.
     """
-    if path.exists() or path.is_symlink():
-        raise ArenaError(
-            f"{path} exists already and is left as it is; choose another path or remove it first"
-        )
-    folder = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    try:
-        folder.mkdir(parents=True)
+    with atomic_write(path, ArenaError, overwrite=False) as folder:
+        folder.mkdir()
         yield folder
-        folder.rename(path)
-    except OSError as error:
-        raise ArenaError(f"cannot write {path}: {error.strerror or error}") from None
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def lay_out(
     folder: Path, shape: tuple[int, ...], columns: Mapping[str, np.ndarray], attributes: Mapping[str, Any]
 ) -> None:
-    """Write everything but the views."""
-    group = zarr.create_group(folder, zarr_format=3, attributes={**attributes, "version": VERSION})
+    """Write everything but the views; of the attributes, `version` and `arrays` are the layout's own."""
+    own = {"version": VERSION, "arrays": list(columns)}
+    group = zarr.create_group(folder, zarr_format=3, attributes={**attributes, **own})
     # By default zeros would not be written at all, and could not be told from a file that was lost.
     with zarr.config.set({"array.write_empty_chunks": True}):
         for name, values in columns.items():
-            group.create_array(name, data=values)
-    group.create_array("views", **_views(shape))
+            group.create_array(name, **_described(name, values.shape, str(values.dtype)))[...] = values
+    group.create_array("views", **_described("views", shape, "uint8"))
 
 
 @contextmanager
 def writable_views(path: Path) -> Iterator[Writer]:
-    """Write shards of views, after clearing away what a kill has left of one; see `sharding.shard_writer`."""
-    for stray in (path / "views").rglob("*.partial"):
-        stray.unlink()
+    """Write shards of views; see `sharding.shard_writer`."""
     with shard_writer(path / "views") as writer:
         yield writer
 
@@ -89,63 +134,54 @@ def load(path: Path) -> Stored:
     if not path.exists():
         raise ArenaError(f"there is no recording at {path}; check the path or make one with `explore`")
     try:
-        attributes = zarr.open_group(path, mode="r", zarr_format=3).attrs.asdict()
-        version = attributes["version"]
+        attributes: dict[str, Any] = zarr.open_group(path, mode="r", zarr_format=3).attrs.asdict()
+        version = attributes.pop("version")
     except _DAMAGE:
         raise ArenaError(
             f"{path} is not a recording; give a folder that `explore` or `save` has written"
         ) from None
     if version != VERSION:
         raise ArenaError(
-            f"{path} has the layout of version {version!r}, not {VERSION}; record it again with this program"
+            f"{path} has the layout of version {version!r}, not {VERSION}; record it again, "
+            "or open it with the program that wrote it"
         )
     try:
         # One by one: of what a group says of its arrays, zarr prints what it cannot read.
-        columns = {
-            name: _whole(path / name) for name in _COLUMNS if name != "poses" or (path / name).exists()
-        }
-        views = zarr.open_array(path / "views", mode="r", zarr_format=3)
-        if views.metadata != zarr.create_array({}, **_views(views.shape)).metadata:
-            raise ValueError("the views are laid out otherwise")
-        missing = [
-            rows
-            for rows in shards(views.shape[0])
-            if not is_complete(file(path / "views", rows), rows.stop - rows.start)
-        ]
+        columns = {name: _whole(path / name) for name in attributes.pop("arrays")}
+        views = StoredViews(path / "views")
+        missing = views.missing()
     except _DAMAGE as error:
         raise ArenaError(f"{path} is damaged ({_first_line(error)}); record it again") from None
     return Stored(views, columns, attributes, missing)
 
 
-def read(
-    views: zarr.Array[Any], chosen: Int[np.ndarray, " chosen"]
-) -> UInt8[np.ndarray, "chosen height width 3"]:
-    """Read views by index, one slice a shard: zarr's own indexing by arrays takes 10 ms a view."""
-    out = np.empty((len(chosen), *views.shape[1:]), np.uint8)
-    shard = chosen // SHARD
-    for item in np.unique(shard):
-        here = np.flatnonzero(shard == item)
-        low, high = chosen[here].min(), chosen[here].max()
-        out[here] = np.asarray(views[low : high + 1])[chosen[here] - low]
-    return out
+def _described(name: str, shape: tuple[int, ...], dtype: str) -> dict[str, Any]:
+    """Describe an array to zarr; all but the views are one chunk."""
+    described: dict[str, Any] = {"shape": shape, "dtype": dtype}
+    if name == "views":
+        return {
+            **described,
+            "chunks": (1, *shape[1:]),
+            "shards": (SHARD, *shape[1:]),
+            "compressors": codecs(),
+        }
+    return {**described, "chunks": tuple(max(1, size) for size in shape), "compressors": Crc32cCodec()}
 
 
-def _views(shape: tuple[int, ...]) -> dict[str, Any]:
-    """Describe the array of views to zarr."""
-    return {
-        "shape": shape,
-        "dtype": "uint8",
-        "chunks": (1, *shape[1:]),
-        "shards": (SHARD, *shape[1:]),
-        "compressors": codec(),
-    }
+def _opened(path: Path) -> zarr.Array[Any]:
+    """Open an array that is described as this program describes it: a bit of that may have flipped, too."""
+    array = zarr.open_array(path, mode="r", zarr_format=3)
+    described = _described(path.name, array.shape, str(array.dtype))
+    if array.metadata != zarr.create_array({}, **described).metadata:
+        raise ValueError(f"{path.name} is described otherwise")
+    return array
 
 
 def _whole(path: Path) -> np.ndarray:
-    column = zarr.open_array(path, mode="r", zarr_format=3)
+    column = _opened(path)
     if column.nchunks_initialized < column.nchunks:
         raise ValueError(f"a part of {path.name} is missing")
-    return np.asarray(column[:])
+    return np.asarray(column[...])
 
 
 def _first_line(error: Exception) -> str:

@@ -11,6 +11,7 @@ from cyclopts import App, Parameter
 from matplotlib.figure import Figure
 
 from arena import Recording
+from cogmap.atomic import atomic_write
 from cogmap.errors import CogmapError
 from cogmap.tables import as_table
 
@@ -35,10 +36,8 @@ def with_truth(path: Path) -> Recording:
 
 def save_figure(figure: Figure, path: Path) -> None:
     """Write a PNG."""
-    try:
-        figure.savefig(path, format="png")
-    except OSError as error:
-        raise CogmapError(f"cannot write {path}: {error.strerror}") from None
+    with atomic_write(path) as fresh:
+        figure.savefig(fresh, format="png")
 
 
 def tell(metrics: dict[str, Any], *, as_json: bool) -> None:

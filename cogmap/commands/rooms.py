@@ -129,6 +129,6 @@ def _explore(
         progress=sys.stderr.isatty(),
     )
     tell(
-        {"recording": str(out), "views": len(recording), "odorants": recording.odours.shape[1]},
+        {"recording": str(out), "views": len(recording), "odorants": recording.require("odours").shape[1]},
         as_json=as_json,
     )

@@ -144,7 +144,7 @@ def demo(
 
 def _smelt_positions(trial: Trial) -> Float[np.ndarray, "views 2"]:
     """Positions (m) that the decoder of `score` reads from the raw nose."""
-    walk, fresh = (np.log(item.odours) for item in (trial.walk, trial.fresh))
+    walk, fresh = (np.log(item.require("odours")) for item in (trial.walk, trial.fresh))
     return decode_positions(walk, trial.truth.train[:, :2], fresh)
 
 

@@ -96,7 +96,7 @@ class CognitiveMap:
         self.epoch = epoch
         self.seed = seed
 
-    def fit(self, views: Any, odours: ArrayLike, *, progress: bool = False) -> CognitiveMap:
+    def fit(self, views: Any, odours: ArrayLike | None, *, progress: bool = False) -> CognitiveMap:
         """Learn a map from scratch, as epochs of `partial_fit` over the views.
 
         Their order is random in every epoch but those of stages that learn from it, as the metric map does.
@@ -137,7 +137,7 @@ class CognitiveMap:
                 bar.refresh()
         return self
 
-    def partial_fit(self, views: Any, odours: ArrayLike, *, jump: bool = False) -> CognitiveMap:
+    def partial_fit(self, views: Any, odours: ArrayLike | None, *, jump: bool = False) -> CognitiveMap:
         """Learn from the next views of a stream.
 
         Time and memory per view do not depend on how many came before. See `neurons.network.Network` for what

@@ -9,37 +9,45 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
-from cogmap.atomic import atomic_write, check_absent
+from cogmap.atomic import atomic_write
 from cogmap.errors import CogmapError
 
 VERSION = 3
-_WEIGHTS, _SETTINGS = "weights.safetensors", "map.json"
 
 
 def write_map(
     path: Path, weights: Mapping[str, Tensor], settings: Mapping[str, Any], learnt: Mapping[str, Any]
 ) -> None:
     """Fill a new folder under another name and give it the right one at the end."""
-    check_absent(path)
     described = {"version": VERSION, "settings": dict(settings), "learnt": dict(learnt)}
-    with atomic_write(path) as folder:
+    with atomic_write(path, overwrite=False) as folder:
         folder.mkdir()
-        save_file({name: weight.contiguous() for name, weight in weights.items()}, folder / _WEIGHTS)
-        (folder / _SETTINGS).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+        tensors, settings_file = _files(folder)
+        save_file({name: weight.contiguous() for name, weight in weights.items()}, tensors)
+        settings_file.write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 
 
 def read_map(path: Path) -> tuple[dict[str, Tensor], dict[str, Any], dict[str, Any]]:
     """Read weights, settings and what was learnt about the input."""
     try:
-        described = json.loads((path / _SETTINGS).read_text(encoding="utf-8"))
-        weights = load_file(path / _WEIGHTS)
+        tensors, settings_file = _files(path)
+        described = json.loads(settings_file.read_text(encoding="utf-8"))
+        weights = load_file(tensors)
     except OSError as error:
         raise CogmapError(f"cannot read a map at {path}: {error.strerror or error}") from None
     except (ValueError, SafetensorError) as error:
         raise CogmapError(f"{path} is damaged or not a map: {error}") from None
-    if not isinstance(described, dict) or described.get("version") != VERSION:
-        raise CogmapError(f"{path} is not a map of version {VERSION}; learn it again with this program")
+    version = described.get("version") if isinstance(described, dict) else None
+    if version != VERSION:
+        raise CogmapError(
+            f"{path} is a map of version {version!r}, not {VERSION}; learn it again, "
+            "or load it with the program that wrote it"
+        )
     try:
         return weights, described["settings"], described["learnt"]
     except KeyError as error:
-        raise CogmapError(f"{path} is damaged: {_SETTINGS} lacks {error}") from None
+        raise CogmapError(f"{path} is damaged: {settings_file.name} lacks {error}") from None
+
+
+def _files(folder: Path) -> tuple[Path, Path]:
+    return folder / "weights.safetensors", folder / "map.json"

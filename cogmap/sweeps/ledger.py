@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import hashlib
 import json
-import os
 import shutil
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -15,6 +14,7 @@ from typing import Any
 
 from filelock import FileLock, Timeout
 
+from arena.atomic import atomic_write
 from cogmap.errors import CogmapError
 from cogmap.sweeps.plan import Plan
 from cogmap.sweeps.points import Point
@@ -33,8 +33,8 @@ Record = dict[str, Any]
 class Ledger:
     """The folder of a sweep, seen by all who work on it.
 
-    A file in `points` is whole whenever it is there. In `work` is what may be lost: locks and what is being
-    written. In `walks` are recordings that points share.
+    A file in `points` is whole whenever it is there. In `work` are locks, which may be lost. In `walks` are
+    recordings that points share.
     """
 
     folder: Path
@@ -46,7 +46,7 @@ class Ledger:
 
     @property
     def work(self) -> Path:
-        """Where locks are, and files until they are whole."""
+        """Where locks are."""
         return self.folder / "work"
 
     @contextmanager
@@ -106,16 +106,9 @@ class Ledger:
 
     @contextmanager
     def replacing(self, path: Path) -> Iterator[Path]:
-        """Give a path to write to; the file takes the place of `path` once it is whole and on the disk."""
-        fresh = self.work / f"{path.stem}.{os.getpid()}{path.suffix}"
-        with disk_errors(self.folder):
-            try:
-                yield fresh
-                with fresh.open("rb+") as file:
-                    os.fsync(file.fileno())
-                fresh.replace(path)
-            finally:
-                fresh.unlink(missing_ok=True)
+        """Give a path to write to, which takes the place of `path` once it is whole and on the disk."""
+        with disk_errors(self.folder), atomic_write(path) as fresh:
+            yield fresh
 
     def _path(self, point: Point) -> Path:
         return self.folder / "points" / f"{point.digest}.json"

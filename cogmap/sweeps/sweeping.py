@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import warnings
 from pathlib import Path
 
@@ -123,9 +122,7 @@ def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
     for name in ("table.csv", "table.parquet"):
         with ledger.replacing(ledger.folder / name) as fresh:
             write_table(table, fresh)
-    figures, fresh = ledger.folder / "figures", ledger.work / "figures"
-    with disk_errors(ledger.folder):
-        shutil.rmtree(fresh, ignore_errors=True)
+    with ledger.replacing(ledger.folder / "figures") as fresh:
         fresh.mkdir()
         for name in statistics_of(table, plan.varied):
             figure = plot_trend(
@@ -137,7 +134,7 @@ def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
                 joined=plan.sample is None,
             )
             figure.savefig(fresh / f"{name}.png")
-        shutil.rmtree(figures, ignore_errors=True)
-        fresh.rename(figures)
-        (ledger.folder / PLAN).write_text(plan.to_toml(), encoding="utf-8")
+    with ledger.replacing(ledger.folder / PLAN) as fresh:
+        fresh.write_text(plan.to_toml(), encoding="utf-8")
+    with disk_errors(ledger.folder):
         write_provenance(ledger.folder, ("sweep", PLAN), None)

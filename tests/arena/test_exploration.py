@@ -1,6 +1,7 @@
 import errno
 import os
 import signal
+import socket
 import subprocess
 import sys
 import textwrap
@@ -175,10 +176,11 @@ def started(work: str) -> subprocess.Popen[bytes]:
     return subprocess.Popen(command, cwd=Path(__file__).parents[2])
 
 
-def killed_at(path: Path, call: int) -> None:
+def killed_at(path: Path, call: int) -> int:
     with started(f"toys.go(toys.Toy(kill_at={call}), out={str(path)!r})") as process:
         process.wait(60)
     assert process.returncode == -signal.SIGKILL
+    return process.pid
 
 
 def test_killed_exploration_goes_on_and_ends_with_the_same_bits(tmp_path: Path) -> None:
@@ -188,11 +190,11 @@ def test_killed_exploration_goes_on_and_ends_with_the_same_bits(tmp_path: Path) 
     with pytest.raises(ArenaError, match="0 of its 700 views"):
         Recording.open(path)
     # The first shard is whole before the third is painted; the second is being written then.
-    killed_at(path, 2)
+    dead = killed_at(path, 2)
     (path / "views" / "c" / "1" / "0" / "0" / "0").unlink(missing_ok=True)
     with pytest.raises(ArenaError, match="256 of its 700 views"):
         Recording.open(path)
-    stray = path / "views" / "c" / "1" / "0" / "0" / "0.0123.partial"
+    stray = path / "views" / "c" / "1" / "0" / "0" / f".0.{socket.gethostname()}-{dead}-0123abcd.partial"
     stray.parent.mkdir(parents=True)
     stray.write_bytes(b"cut short")
     camera = Toy()

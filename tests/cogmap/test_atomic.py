@@ -6,38 +6,6 @@ from cogmap import CogmapError
 from cogmap.atomic import METRICS, atomic_write, check_absent, result_folder
 
 
-def test_it_appears_only_when_it_is_whole(tmp_path: Path) -> None:
-    path = tmp_path / "new" / "page.html"
-    with atomic_write(path) as fresh:
-        fresh.write_text("half", encoding="utf-8")
-        assert not path.exists()
-        assert fresh.suffix == path.suffix
-    assert path.read_text(encoding="utf-8") == "half"
-    assert list(path.parent.iterdir()) == [path]
-
-
-def test_a_folder_too(tmp_path: Path) -> None:
-    with atomic_write(tmp_path / "map") as fresh:
-        fresh.mkdir()
-        (fresh / "weights").touch()
-    assert [file.name for file in (tmp_path / "map").iterdir()] == ["weights"]
-
-
-def test_a_failure_changes_nothing(tmp_path: Path) -> None:
-    path = tmp_path / "page.html"
-    path.write_text("old", encoding="utf-8")
-
-    def fail() -> None:
-        with atomic_write(path) as fresh:
-            fresh.write_text("new", encoding="utf-8")
-            raise ZeroDivisionError
-
-    with pytest.raises(ZeroDivisionError):
-        fail()
-    assert path.read_text(encoding="utf-8") == "old"
-    assert list(tmp_path.iterdir()) == [path]
-
-
 def test_what_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(CogmapError, match="cannot write"), atomic_write(tmp_path / "file" / "page.html"):

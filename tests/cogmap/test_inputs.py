@@ -67,3 +67,10 @@ def test_samples_must_fit_the_rates() -> None:
         check_samples(rates, headings=headings[:3])
     with pytest.raises(CogmapError, match="down to -1 Hz"):
         check_samples(rates - 1)
+
+
+def test_what_a_recording_lacks_is_told() -> None:
+    with pytest.raises(CogmapError, match="there are no odours"):
+        log_odours(None)
+    with pytest.raises(CogmapError, match="there are no poses"):
+        check_array("poses", None, (3, 3))

@@ -79,7 +79,7 @@ def development(
 
     growing, growth, begun = with_blank_afferents(cmap), [], 0
     for seen in [*(count for count in after if count < len(walk)), len(walk)]:
-        growing.partial_fit(walk.views[begun:seen], walk.odours[begun:seen])
+        growing.partial_fit(walk.views[begun:seen], walk.require("odours")[begun:seen])
         begun = seen
         growth.append({"views": seen, **_driven(growing, views, truth).figures})
     order = np.random.default_rng(conditions.seed).permutation(cmap.charts)

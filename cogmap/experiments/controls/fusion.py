@@ -27,7 +27,7 @@ def fusion(conditions: Conditions) -> Result:
     """
     trial = Trial.of(conditions)
     truth, cmap = trial.truth, trial.cmap
-    smells = [np.log(item.odours) for item in (trial.walk, trial.fresh)]
+    smells = [np.log(item.require("odours")) for item in (trial.walk, trial.fresh)]
     cells = {
         "vision only": truth.measure(competing_cells(*trial.codes, seed=conditions.seed)[0]),
         "olfaction only": truth.measure(competing_cells(*smells, seed=conditions.seed)[0]),

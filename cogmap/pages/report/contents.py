@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 from pyarrow import ArrowException
 
+from arena.atomic import recover
 from cogmap.atomic import METRICS
 from cogmap.errors import CogmapError
 from cogmap.experiments.provenance import PROVENANCE
@@ -75,6 +76,7 @@ def read_contents(folder: Path) -> Contents:
     CogmapError
         When it is no such folder, or a file in it is damaged.
     """
+    recover(folder)
     swept = ("table.parquet", "table.csv")
     table = next((folder / name for name in swept if (folder / name).is_file()), None)
     if not (folder / METRICS).is_file() and table is None:

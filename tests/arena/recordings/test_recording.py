@@ -9,8 +9,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from arena.errors import ArenaError
-from arena.recordings.recording import Recording
+from arena.recordings import storage
+from arena.recordings.recording import Recording, _check
 from arena.recordings.sharding import SHARD
+from arena.recordings.storage import StoredViews
 
 
 def recording(count: int = 600, seed: int = 0, **fields: object) -> Recording:
@@ -45,9 +47,9 @@ def test_what_is_saved_is_opened(tmp_path: Path, count: int) -> None:
     rec = recording(count)
     rec.save(tmp_path / "rec.zarr")
     back = Recording.open(str(tmp_path / "rec.zarr"))
-    assert isinstance(back.views, zarr.Array)
+    assert isinstance(back.views, StoredViews)
     assert len(back) == count
-    assert back.attributes == {**rec.attributes, "version": 2}
+    assert back.attributes == rec.attributes
     assert back.views.dtype == np.uint8
     assert (back.odours.dtype, back.times.dtype) == (np.float32, np.float64)
     assert_equal(rec, back)
@@ -59,6 +61,7 @@ def test_layout_on_disk(saved: Path) -> None:
     assert views["zarr_format"] == 3
     assert views["chunk_grid"]["configuration"]["chunk_shape"] == [256, 3, 5, 3]
     assert sharding["configuration"]["chunk_shape"] == [1, 3, 5, 3]
+    assert [codec["name"] for codec in sharding["configuration"]["codecs"]] == ["bytes", "blosc", "crc32c"]
     blosc = sharding["configuration"]["codecs"][1]["configuration"]
     assert (blosc["cname"], blosc["clevel"], blosc["shuffle"]) == ("lz4", 9, "noshuffle")
     assert [p.name for p in saved.parent.iterdir()] == ["rec.zarr"]
@@ -150,8 +153,8 @@ def test_junk_is_not_a_recording(tmp_path: Path, kind: str) -> None:
 
 
 def test_other_version(saved: Path) -> None:
-    zarr.open_group(saved).attrs["version"] = 1
-    with pytest.raises(ArenaError, match="version 1, not 2"):
+    zarr.open_group(saved).attrs["version"] = 2
+    with pytest.raises(ArenaError, match="version 2, not 3"):
         Recording.open(saved)
 
 
@@ -239,7 +242,8 @@ def test_column_that_is_gone(saved: Path, name: str) -> None:
 def test_arrays_that_do_not_fit(saved: Path, name: str, values: np.ndarray) -> None:
     shutil.rmtree(saved / name)
     with zarr.config.set({"array.write_empty_chunks": True}):
-        zarr.open_group(saved).create_array(name, data=values)
+        described = storage._described(name, values.shape, str(values.dtype))
+        zarr.open_group(saved).create_array(name, **described)[:] = values
     with pytest.raises(ArenaError, match=f"damaged: {name} ") as error:
         Recording.open(saved)
     assert "\n" not in str(error.value)
@@ -276,3 +280,130 @@ def test_damaged_metadata_never_ends_in_a_traceback(saved: Path, data: st.DataOb
         message = "sound after all"
     file.write_bytes(sound)
     assert len(message.splitlines()) == 1
+
+
+def rich(count: int = 4) -> Recording:
+    """A small recording with every kind of array."""
+    rng = np.random.default_rng(1)
+    signals = {"speed": rng.normal(size=count), "paws": rng.integers(0, 2, (count, 2, 2)).astype(bool)}
+    return recording(count, joints=rng.normal(size=(count, 5)), signals=signals)
+
+
+def test_arrays_are_named_and_optional(tmp_path: Path) -> None:
+    rec = rich()
+    rec.save(tmp_path / "rich.zarr")
+    back = Recording.open(tmp_path / "rich.zarr")
+    assert_equal(rec, back)
+    assert list(back.signals) == ["speed", "paws"]
+    for found in (back, rec[:], back[:]):
+        np.testing.assert_array_equal(found.joints, rec.joints)
+        for name, values in rec.signals.items():
+            np.testing.assert_array_equal(found.signals[name], values)
+            np.testing.assert_array_equal(found.require(f"signals/{name}"), values)
+    np.testing.assert_array_equal(back[np.array([2])].signals["speed"], rec.signals["speed"][[2]])
+
+
+def test_views_and_times_are_enough(tmp_path: Path) -> None:
+    rec = Recording(views=np.zeros((3, 2, 2, 3), np.uint8), times=np.arange(3.0))
+    rec.save(tmp_path / "bare.zarr")
+    for bare in (rec, Recording.open(tmp_path / "bare.zarr"), rec[:2]):
+        assert (bare.odours, bare.poses, bare.joints, bare.signals) == (None, None, None, {})
+        with pytest.raises(ArenaError, match="has no odours, only views, times; use one that has"):
+            bare.require("odours")
+    assert sorted(path.name for path in (tmp_path / "bare.zarr").iterdir()) == ["times", "views", "zarr.json"]
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("speed", np.zeros(3)),
+        ("speed", np.full(4, np.nan)),
+        ("speed", np.array(0.0)),
+        ("speed", np.array(list("abcd"))),
+        ("../speed", np.zeros(4)),
+        ("a/b", np.zeros(4)),
+        ("", np.zeros(4)),
+    ],
+)
+def test_signals_that_do_not_fit(name: str, values: np.ndarray) -> None:
+    with pytest.raises(ArenaError, match=f"signals/{name} "):
+        _check(np.zeros((4, 2, 2, 3), np.uint8), {"times": np.arange(4.0), f"signals/{name}": values})
+
+
+@pytest.mark.parametrize("arrays", [[], ["odours", "times"], ["times", "../x"], ["times", 7], 7, None])
+def test_list_of_arrays_that_is_damaged(saved: Path, arrays: object) -> None:
+    zarr.open_group(saved).attrs["arrays"] = arrays
+    if arrays == ["odours", "times"]:
+        assert Recording.open(saved).poses is None
+        return
+    with pytest.raises(ArenaError, match="damaged") as error:
+        Recording.open(saved)
+    assert "\n" not in str(error.value)
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("small") / "rich.zarr"
+    rich().save(path)
+    return path
+
+
+def outcome(path: Path) -> str:
+    """What opening and reading a recording ends in."""
+    wanted = rich()
+    try:
+        found = Recording.open(path)[:]
+    except ArenaError as error:
+        return str(error)
+    assert_equal(found, wanted)
+    np.testing.assert_array_equal(found.joints, wanted.joints)
+    assert found.signals.keys() == wanted.signals.keys()
+    for name, values in wanted.signals.items():
+        np.testing.assert_array_equal(found.signals[name], values)
+        assert found.signals[name].dtype == values.dtype
+    return "harmless"
+
+
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data())
+def test_a_flipped_bit_is_one_sentence(
+    small: Path, capfd: pytest.CaptureFixture[str], data: st.DataObject
+) -> None:
+    """In the content of any array, and in what describes it."""
+    files = [path for path in sorted(small.rglob("*")) if path.is_file() and path != small / "zarr.json"]
+    file = data.draw(st.sampled_from(files))
+    sound = file.read_bytes()
+    bit = data.draw(st.integers(0, 8 * len(sound) - 1))
+    damaged = bytearray(sound)
+    damaged[bit // 8] ^= 1 << bit % 8
+    file.write_bytes(damaged)
+    try:
+        said = outcome(small)
+    finally:
+        file.write_bytes(sound)
+    assert len(said.splitlines()) == 1
+    assert capfd.readouterr() == ("", "")
+    if "c" in file.relative_to(small).parts:
+        assert said != "harmless"
+
+
+def test_many_damaged_views_are_one_sentence(saved: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    shard = saved / "views" / "c" / "1" / "0" / "0" / "0"
+    content = bytearray(shard.read_bytes())
+    for at in range(0, len(content) - 5000, 20):
+        content[at] ^= 255
+    shard.write_bytes(content)
+    rec = Recording.open(saved)
+    np.testing.assert_array_equal(rec.views[:256], recording().views[:256])
+    with pytest.raises(ArenaError, match=r"views/c/1/0/0/0 is damaged .*checksum.*; remove it") as error:
+        rec[:]
+    assert len(str(error.value).splitlines()) == 1
+    assert capfd.readouterr() == ("", "")
+
+
+def test_views_that_are_lost_after_opening_are_not_black(saved: Path) -> None:
+    rec = Recording.open(saved)
+    shutil.rmtree(saved / "views" / "c" / "1")
+    with pytest.raises(ArenaError, match="damaged"):
+        rec.views[300]
+    rec.views[0]

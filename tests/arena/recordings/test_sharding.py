@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arena.recordings import sharding
-from arena.recordings.sharding import SHARD, codec, file, is_complete, shard_writer, shards
+from arena.recordings.sharding import SHARD, codecs, file, is_complete, shard_writer, shards
 
 IMAGES = np.random.default_rng(0).integers(0, 9, (SHARD + 44, 4, 6, 3), dtype=np.uint8)
 FIRST, SECOND = shards(len(IMAGES))
@@ -31,7 +31,7 @@ def by_zarr(folder: Path, images: np.ndarray = IMAGES) -> None:
         dtype="uint8",
         chunks=(1, *IMAGES.shape[1:]),
         shards=(SHARD, *IMAGES.shape[1:]),
-        compressors=codec(),
+        compressors=codecs(),
     )
     array[:] = images
 

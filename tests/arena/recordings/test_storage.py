@@ -38,7 +38,7 @@ def test_what_came_in_between_is_not_overwritten(tmp_path: Path) -> None:
 
 
 def laid_out(folder: Path, count: int) -> None:
-    columns = {"odours": np.ones((count, 2), np.float32), "times": np.arange(float(count))}
+    columns = {"times": np.arange(float(count)), "odours": np.ones((count, 2), np.float32)}
     storage.lay_out(folder, (count, 2, 3, 3), columns, {"seed": 1})
 
 
@@ -51,7 +51,7 @@ def test_what_is_missing_is_known_and_can_be_written(tmp_path: Path) -> None:
         views[second] = images[second]
     stored = storage.load(tmp_path / "x")
     assert stored.missing == [first, third]
-    assert stored.attributes == {"seed": 1, "version": 2}
+    assert stored.attributes == {"seed": 1}
     with storage.writable_views(tmp_path / "x") as views:
         for rows in stored.missing:
             views[rows] = images[rows]
@@ -69,4 +69,41 @@ def test_reading_by_index(tmp_path: Path, chosen: list[int]) -> None:
             views[rows] = images[rows]
     index = np.array(chosen, dtype=int)
     stored = storage.load(tmp_path / "x")
-    np.testing.assert_array_equal(storage.read(stored.views, index), images[index])
+    np.testing.assert_array_equal(stored.views[index], images[index])
+
+
+@pytest.mark.parametrize(
+    "key",
+    [
+        0,
+        -1,
+        slice(250, 300),
+        slice(None, None, -50),
+        np.arange(600) % 7 == 0,
+        np.array([[3, 599], [256, 0]]),
+        (slice(254, 258), slice(0, 1)),
+        (..., 0),
+        (5, 1, slice(None), 2),
+        ...,
+    ],
+    ids=str,
+)
+def test_views_on_disk_are_indexed_like_an_array(tmp_path: Path, key: object) -> None:
+    laid_out(tmp_path / "x", 600)
+    images = np.random.default_rng(0).integers(0, 256, (600, 2, 3, 3), dtype=np.uint8)
+    with storage.writable_views(tmp_path / "x") as writer:
+        for rows in shards(600):
+            writer[rows] = images[rows]
+    views = storage.load(tmp_path / "x").views
+    np.testing.assert_array_equal(views[key], images[key])
+    assert np.shape(views[key]) == np.shape(images[key])
+    assert (len(views), views.shape, views.ndim, views.dtype) == (600, images.shape, 4, np.uint8)
+
+
+def test_views_on_disk_become_an_array(tmp_path: Path) -> None:
+    laid_out(tmp_path / "x", 3)
+    with storage.writable_views(tmp_path / "x") as writer:
+        writer[slice(0, 3)] = np.full((3, 2, 3, 3), 7, np.uint8)
+    assert np.asarray(storage.load(tmp_path / "x").views, dtype=np.float32).sum() == 7 * 54
+    with pytest.raises(IndexError):
+        storage.load(tmp_path / "x").views[3]

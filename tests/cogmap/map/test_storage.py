@@ -48,3 +48,10 @@ def test_nothing_is_left_when_writing_fails(tmp_path: Path) -> None:
     with pytest.raises(CogmapError, match="cannot write"):
         write_map(tmp_path / "file" / "map", WEIGHTS, {}, {})
     assert [entry.name for entry in tmp_path.iterdir()] == ["file"]
+
+
+def test_another_version_is_told(tmp_path: Path) -> None:
+    write_map(tmp_path / "map", WEIGHTS, {}, {})
+    (tmp_path / "map" / "map.json").write_text('{"version": 2}', encoding="utf-8")
+    with pytest.raises(CogmapError, match="map of version 2, not 3; learn it again, or load it with"):
+        read_map(tmp_path / "map")
