@@ -21,7 +21,6 @@ from cogmap.sweeps.points import Point
 
 MARK = "sweep.json"
 """What marks a folder as that of a sweep."""
-FORMAT = "cogmap sweep 1"
 
 KEPT = "all points that are finished are kept, and the same command goes on from there"
 """What a sweep that ends early says."""
@@ -124,7 +123,7 @@ class Ledger:
             raise CogmapError(f"{self.folder} exists and is not the folder of a sweep; choose another")
 
     def _lay_out(self, plan: Plan, points: Sequence[Point]) -> None:
-        mark = self.folder / MARK
+        mark, layout = self.folder / MARK, "cogmap sweep 1"
         digest = hashlib.sha256("".join(sorted(point.digest for point in points)).encode()).hexdigest()
         if mark.exists():
             try:
@@ -132,14 +131,14 @@ class Ledger:
                 known = found["format"], found["digest"]
             except (OSError, ValueError, LookupError, TypeError):
                 raise CogmapError(f"{mark} is damaged; choose another folder for the sweep") from None
-            if known != (FORMAT, digest):
+            if known != (layout, digest):
                 raise CogmapError(
                     f"{self.folder} holds another sweep (of {found.get('experiment')!r}); "
                     "choose another folder or remove it first"
                 )
         else:
             described = plan.model_dump(mode="json", by_alias=True, exclude_defaults=True)
-            header = {"format": FORMAT, "digest": digest, **described}
+            header = {"format": layout, "digest": digest, **described}
             with self.replacing(mark) as fresh:
                 fresh.write_text(json.dumps(header, indent=2) + "\n", encoding="utf-8")
         with disk_errors(self.folder):
