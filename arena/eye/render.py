@@ -76,11 +76,11 @@ from arena.rooms.materials import LEVELS, TEXEL
 class Column(typing.NamedTuple):
     """Where a column of the image looks."""
 
-    eye: tuple
+    eye: tuple[float, ...]
     """Where the eye stands (m) and the direction in the room of the column's middle ray."""
-    rays: tuple
+    rays: tuple[float, ...]
     """Directions (ahead, left) at the column's two sides."""
-    rows: tuple
+    rows: tuple[int, int]
     """The first row that is not backdrop, and the first below it that is again."""
     behind: int
     """Its column of the backdrop."""
@@ -103,7 +103,7 @@ class Brush(typing.NamedTuple):
     """Texels of a wall from the floor up, averaged along what a part of the column covers."""
     texel: np.ndarray
     """For each row the first texel of the strip that it covers."""
-    mix: tuple
+    mix: tuple[np.ndarray, ...]
     """For each row the weights of that texel and the next two."""
     column: np.ndarray
     """Red, green, blue and a spare number for each row, summed up part by part."""

@@ -12,7 +12,7 @@ from cogmap.errors import CogmapError
 from cogmap.portable import portable_environment
 
 
-@app.command(name="portable")
+@app.command(name="portable", help_flags=[], version_flags=[])  # those are the command's own
 def _portable(*command: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> NoReturn:
     """Run a command so that it gives the same arrays on every x86-64 processor with AVX2.
 
@@ -27,6 +27,9 @@ def _portable(*command: Annotated[str, Parameter(allow_leading_hyphen=True)]) ->
     command
         What to run, with its options.
     """
+    if command[:1] == ("--help",):
+        app.help_print("portable")
+        raise SystemExit(0)
     if not command:
         raise CogmapError("there is no command to run; for example `cogmap portable cogmap demo`")
     try:

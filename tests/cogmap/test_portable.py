@@ -101,3 +101,8 @@ def test_bad_commands_are_one_sentence(
 
 def test_the_command_ends_as_what_it_runs() -> None:
     assert run(*COGMAP, "portable", sys.executable, "-c", "raise SystemExit(7)").returncode == 7
+
+
+def test_help_is_of_what_is_asked() -> None:
+    assert "cogmap portable dask worker" in " ".join(run(*COGMAP, "portable", "--help").stdout.split())
+    assert "Explore a room" in run(*COGMAP, "portable", *COGMAP, "demo", "--help").stdout
