@@ -109,13 +109,17 @@ class Localiser:
         near = known[indices].astype(np.float64)
         mean = np.einsum("qk,qkc->qc", share, near)
         near -= mean[:, None]
-        near *= np.sqrt(share)[:, :, None]
+        root = np.sqrt(share)
+        near *= root[:, :, None]
         products = near @ near.transpose(0, 2, 1)
         spread = np.trace(products, axis1=1, axis2=2)
         # Equal codes have no spread, and then no view is more like the query than another.
         products += np.eye(len(share[0])) * (self.ridge * spread + (spread == 0))[:, None, None]
         sought = near @ (asked - mean)[:, :, None]
-        weights: np.ndarray = share + np.sqrt(share) * np.linalg.solve(products, sought)[:, :, 0]
+        tilt = np.linalg.solve(products, sought)[:, :, 0]
+        # weights sum to one: along the root they would all grow alike, by rounding divided by the ridge
+        tilt -= root * (root * tilt).sum(axis=1, keepdims=True)
+        weights: np.ndarray = share + root * tilt
         weights[indices[:, 0] < 0] = np.nan
         return weights
 
