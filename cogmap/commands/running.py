@@ -16,8 +16,8 @@ from cogmap.portable import portable_environment
 def _portable(*command: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> NoReturn:
     """Run a command so that it gives the same arrays on every x86-64 processor with AVX2.
 
-    MKL, OpenBLAS, ATen, numpy, OpenCV and numba are held to the same instructions; learning takes about twice
-    as long. Whatever shares in one result, as the workers of a cluster do, must be started in this way.
+    MKL, OpenBLAS, ATen, numpy, OpenCV and numba are held to the same instructions; learning takes 1.4 to 2
+    times as long. Whatever shares in one result, as the workers of a cluster do, must be started in this way.
 
     Examples: `cogmap portable cogmap demo --seed 1`; `cogmap portable python analysis.py`;
     `cogmap portable dask worker tcp://10.0.0.1:8786`.
