@@ -35,7 +35,9 @@ def with_truth(path: Path) -> Recording:
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """Write a PNG."""
+    """Write a PNG into a folder that is there: a mistyped one is not made."""
+    if not path.parent.is_dir():
+        raise CogmapError(f"cannot write {path}: No such file or directory")
     with atomic_write(path) as fresh:
         figure.savefig(fresh, format="png")
 

@@ -182,7 +182,7 @@ def test_a_room_without_free_space_is_refused(run, tmp_path: Path) -> None:
         (["explore", "furnished", "--motion", "replay", "--path", "nowhere.csv"], "nowhere.csv"),
         (["explore", "furnished", "--motion", "track", "--path", "rat.csv"], "path"),
         (["explore", "furnished", "--odorant", 1], "odorant"),
-        (["experiment", "levitation"], "choose one of rotation"),
+        (["experiment", "levitation"], "choose one of acuity"),
         (["experiment", "rotation", "--views", 3], "views is 3"),
         (["experiment", "distinguishability", "--arena", "furnished"], "rooms of its own"),
         (["dance"], "dance"),
