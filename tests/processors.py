@@ -47,7 +47,7 @@ def processor(name: str, folder: Path) -> dict[str, str] | None:
         return None
     told = dict(PROCESSORS[name])
     if name in _WITHOUT:
-        found = np.show_config(mode="dicts")["SIMD Extensions"]["found"]
+        found = np.show_config(mode="dicts")["SIMD Extensions"].get("found", [])
         told["NPY_DISABLE_CPU_FEATURES"] = " ".join(one for one in found if one.startswith(_WITHOUT[name]))
     compiler = shutil.which("cc") or shutil.which("gcc")
     if compiler and "GenuineIntel" not in Path("/proc/cpuinfo").read_text("utf-8"):
