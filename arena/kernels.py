@@ -51,17 +51,18 @@ def cache_folder(root: Path) -> Path | None:
 _folder = cache_folder(Path(__file__).parent)
 
 
-def kernel(*, parallel: bool = False, forceinline: bool = False) -> Callable[[Function], Function]:
-    """Compile a function by numba's `njit` with these options; it divides as numpy does, by zero as well."""
+def kernel(**options: Any) -> Callable[[Function], Function]:
+    """Compile a function by numba's `njit` with these options; it divides as numpy does, by zero as well.
+
+    An option that is not given is the caller's: what an inlined kernel calls is inlined, too.
+    """
 
     def compiled(function: Function) -> Function:
         # numba asks for the folder now and never again, and other packages keep theirs.
         before, _settings.CACHE_DIR = _settings.CACHE_DIR, str(_folder)
         try:
-            compile_ = njit(
-                cache=_folder is not None, error_model="numpy", parallel=parallel, forceinline=forceinline
-            )
-            return cast("Function", compile_(function))
+            made = njit(cache=_folder is not None, error_model="numpy", **options)
+            return cast("Function", made(function))
         finally:
             _settings.CACHE_DIR = before
 

@@ -150,20 +150,6 @@ def _paint_face(
 
 @kernel(forceinline=True)
 @typing.no_type_check
-def _paint_ground(
-    rows: tuple,
-    weight: float,
-    ground: Ground,
-    where: Column,
-    lens: Lens,
-    scene: Scene,
-    brush: Brush,
-) -> None:
-    paint_ground(rows, weight, ground, where.eye, lens, scene.texels, scene.level_starts, brush.column)
-
-
-@kernel(forceinline=True)
-@typing.no_type_check
 def _climb(
     part: tuple,
     met: int,
@@ -183,7 +169,10 @@ def _climb(
         face, projected = sight.faces[one.face], sight.projected[one.face]
         foot = max(horizon + scale * (lens.eye - ground), peak)
         if foot < gaze:
-            _paint_ground((foot, gaze), weight, colour, where, lens, scene, brush)
+            rows = foot, gaze
+            paint_ground(
+                rows, weight, colour, where.eye, lens, scene.texels, scene.level_starts, brush.column
+            )
             gaze = foot
         # The far side of a solid is its back; there its top ends and the floor goes on.
         if face.closed and projected.aside > 0.0:
@@ -200,7 +189,8 @@ def _climb(
             ground, colour = face.height, Ground(face.red, face.green, face.blue, -1, 1.0)
     # Past the last face the ground goes on to the horizon, whatever it is: rooms need not be closed.
     if gaze > horizon:
-        _paint_ground((horizon, gaze), weight, colour, where, lens, scene, brush)
+        rows = horizon, gaze
+        paint_ground(rows, weight, colour, where.eye, lens, scene.texels, scene.level_starts, brush.column)
         gaze = horizon
     paint_backdrop((peak, gaze), weight, backdrop, where.behind, brush.column)
 
@@ -242,14 +232,16 @@ def _paint(
     projected, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
     first, listed = project(pose, faces, lens, projected, span)
     touches, hits = np.empty(len(listed), COLUMN_SPAN), np.empty(len(span), RAY_HIT)
-    sight, edges = Sight(faces, projected, touches, hits), np.empty(2 * len(span) + 2)
+    edges, painted = np.empty(2 * len(span) + 2), np.empty((lens.width, 2), np.int64)
     # A block longer than what is read: loops write whole blocks.
     length = lens.height + BLOCK
     strip = np.zeros(4 * (int(faces["height"].max() / TEXEL) + BLOCK), np.float32)
+    texel = np.empty(length, np.int32)
     mix = np.empty(length, np.float32), np.empty(length, np.float32), np.empty(length, np.float32)
     column, quad = np.empty(backdrop.shape[1], np.float32), np.empty((4, backdrop.shape[1]), np.uint8)
-    brush, quad_words = Brush(strip, np.empty(length, np.int32), mix, column), quad.view(np.uint32)
-    painted = np.empty((lens.width, 2), np.int64)
+    quad_words = quad.view(np.uint32)
+    brush = Brush(strip, texel, mix, column)
+    sight = Sight(faces, projected, touches, hits)
     for c in range(lens.width):
         within = first[c], first[c + 1]
         touch(c, within, listed, _rays(ray, c), faces, projected, span, touches)
