@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 import torch
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from neurons.atlas.atlas import Atlas
@@ -23,11 +23,17 @@ from neurons.layers.sanger import Sanger
 class Recalled(NamedTuple):
     """What the atlas recalls at the sight of views."""
 
-    excited: ChartActivity
+    chart: Int[Tensor, "views winners"]
+    weight: Float[Tensor, "views winners"]
     heading: Float[Tensor, "views"]
     """In the map's own frame, rad; NaN without a compass."""
     odour: Float[Tensor, "views odorants"]
     """Log concentrations."""
+
+    @property
+    def excited(self) -> ChartActivity:
+        """Which charts are active, and how much."""
+        return ChartActivity(self.chart, self.weight)
 
 
 class Circuit(nn.Module):
@@ -82,7 +88,7 @@ class Circuit(nn.Module):
         """Tell heading and smell from sight."""
         codes = self.code(strips)
         excited = self.readout.excite(self.charts, codes)
-        return Recalled(excited, *self.readout(self.charts, codes, excited))
+        return Recalled(*excited, *self.readout(self.charts, codes, excited))
 
     def atlas_diagnosis(self) -> str:
         """Say in what the charts do not agree, or nothing when they do."""

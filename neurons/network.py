@@ -42,7 +42,7 @@ class Network(Circuit):
         odorants: int,
         *,
         epoch: int,
-        stages: Sequence[Stage] = STAGES,
+        stages: Sequence[Stage[Any]] = STAGES,
         **circuit: Any,
     ) -> None:
         super().__init__(features, odorants, **circuit)
@@ -53,14 +53,14 @@ class Network(Circuit):
         self._make_layers(0)
 
     @property
-    def stage(self) -> Stage:
+    def stage(self) -> Stage[Any]:
         """The stage that the next view falls into; the last one never ends."""
         return next(
             stage for stage in reversed(self.stages) if self.begins(stage.name) <= int(self.views_seen)
         )
 
     @property
-    def entered(self) -> Stage:
+    def entered(self) -> Stage[Any]:
         """The stage before which everything is fixed: `stage`, or the one that ends with the next view."""
         return self.stages[int(self.stage_index)]
 
@@ -73,15 +73,23 @@ class Network(Circuit):
         """How many views come before a stage."""
         return self.epoch * sum(stage.epochs for stage in self.stages[: self._index(name)])
 
+    def see(self, strips: Float[Tensor, "views features"]) -> Any:
+        """Show strips to the layers that are fixed by now: what the present stage learns from."""
+        self.advance_stage()
+        return self.stage.see(self, strips)
+
     def learn(
         self, strips: Float[Tensor, "views features"], log_odours: Float[Tensor, "views odorants"]
     ) -> None:
         """Let the layer whose period it is learn from a batch."""
-        self.advance_stage()
+        self.learn_seen(self.see(strips), log_odours)
+
+    def learn_seen(self, seen: Any, log_odours: Float[Tensor, "views odorants"]) -> None:
+        """Let the layer whose period it is learn from a batch that `see` has made of strips."""
         stage = self.stage
-        self.views_seen += len(strips)
+        self.views_seen += len(log_odours)
         progress = (int(self.views_seen) - self.begins(stage.name)) / (stage.epochs * self.epoch)
-        stage.learn(self, Batch(strips, log_odours, min(1.0, progress), window=float(self.epoch)))
+        stage.learn(self, Batch(seen, log_odours, min(1.0, progress), window=float(self.epoch)))
 
     def advance_stage(self) -> None:
         """Finish the stages before the present one, each once."""

@@ -3,26 +3,45 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 import torch
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.heading_axis import heading_axes
 from neurons.atlas.synchronisation import synchronise
-from neurons.circuit import Circuit
+from neurons.circuit import Circuit, Recalled
 from neurons.errors import NeuronsError
 
 
-@dataclass(frozen=True)
-class Batch:
-    """Views that are learnt together, as the retina's strips, and what was smelt there."""
+Seen = TypeVar("Seen", Tensor, Recalled)
+"""Views as a stage sees them: rows of a tensor, or what the atlas recalls."""
 
-    strips: Float[Tensor, "views features"]
+
+def joined(parts: Sequence[Seen]) -> Seen:
+    """Put batches of the same kind together."""
+    if isinstance(parts[0], Tensor):
+        return torch.cat(parts)
+    return Recalled(*(torch.cat(part) for part in zip(*parts, strict=True)))
+
+
+def chosen(seen: Seen, views: Int[Tensor, "_"]) -> Seen:
+    """Take some of the views."""
+    if isinstance(seen, Tensor):
+        return seen.index_select(0, views)
+    return Recalled(*(part.index_select(0, views) for part in seen))
+
+
+@dataclass(frozen=True)
+class Batch(Generic[Seen]):
+    """Views that are learnt together, as the stage sees them, and what was smelt there."""
+
+    seen: Seen
     log_odours: Float[Tensor, "views odorants"]
     progress: float
     """How much of the stage is over with this batch, from 0 to 1."""
@@ -31,7 +50,7 @@ class Batch:
 
 
 @dataclass(frozen=True)
-class Stage(ABC):
+class Stage(ABC, Generic[Seen]):
     """A critical period in which some layers learn while all others are fixed.
 
     A new stage is a class of this kind, and a line in the list of stages.
@@ -61,8 +80,16 @@ class Stage(ABC):
         """Make layers of this stage alone, by names that the circuit lacks; again when charts are added."""
         return {}
 
+    @staticmethod
     @abstractmethod
-    def learn(self, circuit: Circuit, batch: Batch) -> None:
+    def see(circuit: Circuit, strips: Float[Tensor, "views features"]) -> Seen:
+        """Pass the retina's strips through layers that are fixed by now, to what this stage learns from.
+
+        Stages that share this method see the same, and `fit` shows it to them without making it again.
+        """
+
+    @abstractmethod
+    def learn(self, circuit: Circuit, batch: Batch[Seen]) -> None:
         """Let its layers learn from a batch."""
 
     def finish(self, circuit: Circuit) -> str | None:  # noqa: ARG002
@@ -71,19 +98,49 @@ class Stage(ABC):
 
 
 @dataclass(frozen=True)
-class CodeStage(Stage):
+class StripStage(Stage[Tensor]):
+    """A stage that learns from the retina's strips themselves."""
+
+    @staticmethod
+    def see(circuit: Circuit, strips: Float[Tensor, "views features"]) -> Tensor:  # noqa: ARG004
+        """Give the strips as they are."""
+        return strips
+
+
+@dataclass(frozen=True)
+class CodedStage(Stage[Tensor]):
+    """A stage that learns from codes."""
+
+    @staticmethod
+    def see(circuit: Circuit, strips: Float[Tensor, "views features"]) -> Tensor:
+        """Give the principal components of the strips."""
+        return circuit.code(strips)
+
+
+@dataclass(frozen=True)
+class RecallStage(Stage[Recalled]):
+    """A stage that learns from what the atlas recalls."""
+
+    @staticmethod
+    def see(circuit: Circuit, strips: Float[Tensor, "views features"]) -> Recalled:
+        """Give charts, heading and smell at the sight of the strips."""
+        return circuit.recall(strips)
+
+
+@dataclass(frozen=True)
+class CodeStage(StripStage):
     """Principal components of the retina's strips."""
 
     name = "code"
     epochs: int = 4
 
-    def learn(self, circuit: Circuit, batch: Batch) -> None:
+    def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:
         """Take a step of Sanger's rule."""
-        circuit.code.partial_fit(batch.strips)
+        circuit.code.partial_fit(batch.seen)
 
 
 @dataclass(frozen=True)
-class ChartStage(Stage):
+class ChartStage(CodedStage):
     """Charts compete for codes, until they tile the manifold of views.
 
     Parameters
@@ -96,11 +153,11 @@ class ChartStage(Stage):
     epochs: int = 6
     winners: tuple[int, int] = (12, 4)
 
-    def learn(self, circuit: Circuit, batch: Batch) -> None:
+    def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:
         """Let the nearest charts learn, fewer and fewer, falling geometrically."""
         first, last = self.winners
         winners = round(float(first * (last / first) ** batch.progress))
-        circuit.charts.partial_fit(circuit.code(batch.strips), winners=winners, window=batch.window)
+        circuit.charts.partial_fit(batch.seen, winners=winners, window=batch.window)
 
     def finish(self, circuit: Circuit) -> None:
         """Freeze the charts, and measure how far apart they lie."""
@@ -109,7 +166,7 @@ class ChartStage(Stage):
 
 
 @dataclass(frozen=True)
-class OlfactionStage(Stage):
+class OlfactionStage(CodedStage):
     """Each chart learns how smell changes across it; then the charts agree on a compass.
 
     Parameters
@@ -122,9 +179,9 @@ class OlfactionStage(Stage):
     sums = ("olfaction.gram", "olfaction.cross")
     winners: int = 16
 
-    def learn(self, circuit: Circuit, batch: Batch) -> None:
+    def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:
         """Add views to the regressions of the charts near them, with Gaussian weights."""
-        codes = circuit.code(batch.strips)
+        codes = batch.seen
         nearest = circuit.charts.excite(codes, self.winners)
         weight = torch.exp(-0.5 * nearest.squared_distance / circuit.readout.spacing[nearest.chart] ** 2)
         coordinates = circuit.charts.coordinates(codes, nearest.chart)
@@ -151,21 +208,20 @@ class OlfactionStage(Stage):
 
 
 @dataclass(frozen=True)
-class CellStage(Stage):
+class CellStage(RecallStage):
     """Place cells share out the recalled smells, head-direction cells the headings."""
 
     name = "cells"
     epochs: int = 2
 
-    def learn(self, circuit: Circuit, batch: Batch) -> None:
+    def learn(self, circuit: Circuit, batch: Batch[Recalled]) -> None:
         """Let the cells of both populations compete."""
-        recalled = circuit.recall(batch.strips)
-        circuit.place.compete(recalled.odour, window=batch.window)
-        circuit.heading.compete(recalled.heading, window=batch.window)
+        circuit.place.compete(batch.seen.odour, window=batch.window)
+        circuit.heading.compete(batch.seen.heading, window=batch.window)
 
 
 @dataclass(frozen=True)
-class MetricMapStage(Stage):
+class MetricMapStage(RecallStage):
     """Where places are, and by how much the compass is off there, from the order of views."""
 
     name = "metric_map"
@@ -179,10 +235,9 @@ class MetricMapStage(Stage):
     )
     recent = ("metric_map.recent",)
 
-    def learn(self, circuit: Circuit, batch: Batch) -> None:
+    def learn(self, circuit: Circuit, batch: Batch[Recalled]) -> None:
         """Add displacements."""
-        recalled = circuit.recall(batch.strips)
-        circuit.metric_map.partial_fit(circuit.place, recalled.odour, recalled.heading)
+        circuit.metric_map.partial_fit(circuit.place, batch.seen.odour, batch.seen.heading)
 
     def finish(self, circuit: Circuit) -> None:
         """Solve for positions and offsets, and let each place cell keep to one place."""
@@ -192,7 +247,7 @@ class MetricMapStage(Stage):
 
 
 @dataclass(frozen=True)
-class AfferentStage(Stage):
+class AfferentStage(RecallStage):
     """The cells' afferents from sight, instructed by recalled smell and corrected heading."""
 
     name = "afferents"
@@ -203,15 +258,15 @@ class AfferentStage(Stage):
         "heading.afferents.activity",
     )
 
-    def learn(self, circuit: Circuit, batch: Batch) -> None:
+    def learn(self, circuit: Circuit, batch: Batch[Recalled]) -> None:
         """Associate active charts with the rates that smell and heading demand."""
-        excited, heading, odour = circuit.recall(batch.strips)
+        excited, heading, odour = batch.seen.excited, batch.seen.heading, batch.seen.odour
         corrected = heading + circuit.metric_map(circuit.place, odour).offset
         circuit.place.afferents.partial_fit(excited, circuit.place.instruct(excited, odour))
         circuit.heading.afferents.partial_fit(excited, circuit.heading.tuning(corrected))
 
 
-STAGES: tuple[Stage, ...] = (
+STAGES: tuple[Stage[Any], ...] = (
     CodeStage(),
     ChartStage(),
     OlfactionStage(),

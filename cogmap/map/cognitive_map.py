@@ -28,6 +28,7 @@ from neurons.errors import NeuronsError
 from neurons.layers.retina import Retina
 from neurons.merging import forked, merge
 from neurons.network import Network
+from neurons.stages import chosen, joined
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same map."""
@@ -122,16 +123,23 @@ class CognitiveMap:
         order = np.random.default_rng(self.seed)
         with one_thread(), tqdm(total=network.epochs, unit="epoch", disable=not progress) as bar:
             started = time.perf_counter()
-            strips = torch.cat([strip for _, strip in self._strips(views)])
+            strips = torch.empty(count, self._retina.features)
+            for rows, strip in self._strips(views):
+                strips[rows] = strip
             self.seconds_["retina"] = time.perf_counter() - started
+            see, seen = None, strips
             while int(network.views_seen) < network.epochs * count:
                 started = time.perf_counter()
                 network.advance_stage()
                 stage = network.stage
                 bar.set_description(stage.name)
+                # what a stage sees is made by layers that are fixed: once for all its epochs
+                if type(stage).see is not see:
+                    see = type(stage).see
+                    seen = joined([network.see(batch) for batch in strips.split(BATCH)])
                 epoch = np.arange(count) if stage.in_order else order.permutation(count)
                 for rows in torch.from_numpy(epoch).split(BATCH):
-                    network.learn(strips[rows], smells[rows])
+                    network.learn_seen(chosen(seen, rows), smells[rows])
                 self.seconds_[stage.name] = self.seconds_.get(stage.name, 0.0) + time.perf_counter() - started
                 bar.n = int(network.views_seen) // count
                 bar.refresh()
@@ -346,11 +354,12 @@ class CognitiveMap:
     def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, ...]:
         """Rates of both populations, heading, recalled odour and position."""
         network = self._network
-        excited, heading, odour = network.recall(strips)
-        position, offset = network.metric_map(network.place, odour)
-        angle = (heading + offset)[:, None]
+        recalled = network.recall(strips)
+        position, offset = network.metric_map(network.place, recalled.odour)
+        angle = (recalled.heading + offset)[:, None]
         phase = mean_angle(angle, torch.ones_like(angle))
-        return network.place.afferents(excited), network.heading.afferents(excited), phase, odour, position
+        place, heading = (cells.afferents(recalled.excited) for cells in (network.place, network.heading))
+        return place, heading, phase, recalled.odour, position
 
     def _smell(self, odours: Float[Tensor, "views odorants"]) -> Activity:
         blind = np.full(len(odours), np.nan, np.float32)

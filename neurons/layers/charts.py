@@ -60,11 +60,9 @@ class Charts(nn.Module):
 
     def excite(self, codes: Float[Tensor, "views components"], winners: int) -> NearestCharts:
         """Find the nearest centres of each code, nearest first."""
-        squared = torch.addmm(self.centres.square().sum(dim=1), codes, self.centres.T, alpha=-2.0)
-        nearest = squared.topk(min(winners, len(self)), dim=1, largest=False)
+        chart = self._nearest(codes, winners)
         # subtracting codes directly keeps the digits that |c|² − 2 z·c loses near a centre
-        exact = (codes[:, None] - self.centres[nearest.indices]).square().sum(dim=2)
-        return NearestCharts(nearest.indices, exact)
+        return NearestCharts(chart, (codes[:, None] - self.centres[chart]).square().sum(dim=2))
 
     def coordinates(
         self, codes: Float[Tensor, "views components"], chart: Int[Tensor, "views winners"]
@@ -98,34 +96,41 @@ class Charts(nn.Module):
         self.variances = torch.cat([self.variances, torch.zeros(len(longest), DIMENSIONS)])
         self.initialised.fill_(len(self.centres))
 
+    def _nearest(self, codes: Float[Tensor, "views components"], winners: int) -> Int[Tensor, "views _"]:
+        # |z − c|² less |z|², which is the same for all charts: one product for the batch
+        squared = torch.addmm(self.centres.square().sum(dim=1), codes, self.centres.T, alpha=-2.0)
+        return squared.topk(min(winners, len(self)), dim=1, largest=False).indices
+
     def _compete(self, codes: Float[Tensor, "views components"], *, winners: int, window: float) -> None:
-        chart = self.excite(codes, winners).chart
+        chart = self._nearest(codes, winners)
         h = torch.exp(-2.0 * torch.arange(chart.shape[1]) / chart.shape[1])
-        flat, weight = chart.flatten(), h.repeat(len(codes))
+        # only what has won is touched: a third of the charts, and of the memory
+        won, flat = chart.flatten().unique(return_inverse=True)
+        weight = h.repeat(len(codes))
+        # index_add_ on one thread adds in the order of views, so that the same seed gives the same bits
+        fed = torch.zeros(len(won)).index_add_(0, flat, weight)
         # forgotten by the batch, and never below zero where a batch is longer than the window
         self.responsibility *= max(0.0, 1 - len(codes) / window)
-        self.responsibility.index_add_(0, flat, weight)
-        # a chart that has not won yet has no weight to divide by, and its numerators are zero
-        rate = 1 / self.responsibility.clamp(min=1e-6)
+        self.responsibility[won] += fed
+        rate = 1 / self.responsibility[won]
+        tangents = self.tangents[won]
         residual = (codes[:, None] - self.centres[chart]).flatten(0, 1)
-        y = torch.einsum("ndc,nc->nd", self.tangents[flat], residual)
-        # index_add_ on one thread adds in the order of views, so that the same seed gives the same bits
-        shift = torch.zeros_like(self.centres).index_add_(0, flat, weight[:, None] * residual)
-        hebb = torch.zeros_like(self.tangents).index_add_(
-            0, flat, (weight[:, None] * y)[:, :, None] * residual[:, None]
+        y = torch.einsum("ndc,nc->nd", tangents.index_select(0, flat), residual)
+        weighted = weight[:, None] * y
+        shift = torch.zeros(len(won), residual.shape[1]).index_add_(0, flat, weight[:, None] * residual)
+        hebb = torch.zeros_like(tangents).index_add_(0, flat, weighted[:, :, None] * residual[:, None])
+        cross = torch.zeros(len(won), DIMENSIONS, DIMENSIONS).index_add_(
+            0, flat, weighted[:, :, None] * y[:, None]
         )
-        cross = torch.zeros(len(self), DIMENSIONS, DIMENSIONS).index_add_(
-            0, flat, weight[:, None, None] * y[:, :, None] * y[:, None]
-        )
-        fed = torch.zeros_like(self.responsibility).index_add_(0, flat, weight)
-        self.centres += rate[:, None] * shift
-        drive = self.variances[:, :, None] * self.tangents
-        decay = torch.tril(cross, diagonal=-1) @ self.tangents
+        self.centres[won] += rate[:, None] * shift
+        drive = self.variances[won][:, :, None] * tangents
+        decay = torch.tril(cross, diagonal=-1) @ tangents
         drive += rate[:, None, None] * (hebb - decay - fed[:, None, None] * drive)
-        self.variances = drive.norm(dim=2)
-        # a chart that has won nothing has drive 0, and keeps the tangents that it was born with
-        length = self.variances[:, :, None]
-        self.tangents = torch.where(length > 0, drive / length, self.tangents)
+        length = drive.norm(dim=2)
+        self.variances[won] = length
+        # views at its very centre drive a chart nowhere: it keeps the tangents that it was born with
+        drive *= (1 / length)[:, :, None]
+        self.tangents[won] = torch.where(length[:, :, None] > 0, drive, tangents)
 
     def freeze(self) -> None:
         """Make the tangents of each chart orthonormal."""

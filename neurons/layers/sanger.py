@@ -46,17 +46,17 @@ class Sanger(nn.Module):
 
     def forward(self, x: Float[Tensor, "views features"]) -> Float[Tensor, "views components"]:
         """Project onto the components learnt so far."""
-        return (x - self.mean) @ self.weight.T
+        return torch.addmm(self.weight @ self.mean, x, self.weight.T, beta=-1)
 
     def partial_fit(self, x: Float[Tensor, "views features"]) -> None:
         """Take one Hebbian step on a batch."""
         self.steps += 1
         step = int(self.steps)
         self.mean += (x.mean(dim=0) - self.mean) / step
-        centred = x - self.mean
-        y = centred @ self.weight.T
+        y = self(x)
         rate = 0.5 / (1 + step / 40)
-        hebb = y.T @ centred / len(x)
+        # ⟨y (x − mean)ᵀ⟩ without a centred copy of x, which would take as long as the products
+        hebb = (y.T @ x - y.sum(dim=0)[:, None] * self.mean) / len(x)
         # the strict triangle: what earlier neurons explain; the decay of the neuron itself is in `drive`
         decay = torch.tril(y.T @ y / len(x), diagonal=-1) @ self.weight
         drive = self.variance[:, None] * self.weight
