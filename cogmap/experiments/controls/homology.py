@@ -14,9 +14,7 @@ from jaxtyping import Float
 from arena import Arena, Brownian, Camera, Disc
 from cogmap.evaluation.homology_of_map import homologies
 from cogmap.evaluation.populations import grow_map, perceive
-from cogmap.experiments.conditions import Conditions, poses_of
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
+from cogmap.experiments import Conditions, Result, experiment, poses_of
 from cogmap.plots import plot_barcode_grid, plot_barcodes
 from cogmap.shape import Betti, Nerve, population_nerve
 

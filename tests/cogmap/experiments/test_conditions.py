@@ -1,10 +1,10 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from arena import Arena, Brownian, Camera, Nose, Rotation
-from cogmap.experiments.conditions import FRESH_SEED, Conditions, poses_of
+from cogmap.experiments.conditions import FRESH_SEED, Conditions
+from cogmap.experiments.poses import poses_of
 
 ROOM = Arena.load("furnished")
 SMALL = Camera.panoramic(36, 6)
@@ -32,12 +32,6 @@ def test_views_kept_in_a_folder_are_the_same(tmp_path: Path) -> None:
         np.testing.assert_array_equal(kept.views, here.explore(Brownian(), SMALL, fresh=fresh).views)
         assert not isinstance(kept.views, np.ndarray)
     assert len(list(tmp_path.iterdir())) == 2
-
-
-def test_what_has_no_truth_is_refused() -> None:
-    blind = Conditions(ROOM, 20).explore(Brownian(), SMALL).without_truth()
-    with pytest.raises(ValueError, match="has poses"):
-        poses_of(blind)
 
 
 def test_what_the_setting_has_goes_before_what_the_experiment_has() -> None:

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from arena import Arena, Camera, Disc, Rotation
+from cogmap.cells import position_errors
+from cogmap.evaluation.ground_truth import as_one_table
 from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Conditions, poses_of
-from cogmap.experiments.trial import Trial
+from cogmap.experiments import Conditions, poses_of
+from cogmap.experiments.trial import Trial, show_cells
 
 CONDITIONS = Conditions(Arena.load("furnished"), 1200, seed=1)
 
@@ -38,6 +40,26 @@ def test_its_score_is_that_of_what_is_perceived(trial: Trial) -> None:
     walked = replace(trial, reachable=None)
     np.testing.assert_array_equal(walked.truth.reachable, trial.truth.train[:, :2])
     assert walked.score == score(trial.test, trial.truth.poses, train=(trial.train, trial.truth.train))
+
+
+def test_the_nose_alone_is_read_by_the_decoder_of_the_score(trial: Trial) -> None:
+    walk, fresh = np.log(trial.walk.odours), np.log(trial.fresh.odours)
+    away = position_errors(walk, trial.truth.train[:, :2], fresh, trial.truth.poses[:, :2])
+    assert trial.nose_figures["nose_position_median_m"] == np.median(away)
+    assert trial.nose_figures["nose_position_p95_m"] == np.percentile(away, 95)
+
+
+def test_its_figures_are_those_of_both_populations_and_the_score(trial: Trial) -> None:
+    assert trial.figures == trial.place.place_figures | trial.heading.heading_figures | trial.score
+
+
+def test_a_silent_population_is_shown_unless_told(trial: Trial) -> None:
+    cells = {"place": trial.place, "mute": trial.truth.measure(0 * trial.place.rates)}
+    tables, figures = show_cells(cells)
+    assert tables["cells"].equals(as_one_table(cells))
+    assert figures.keys() == {"cells", "examples"}
+    assert len(figures["examples"].subfigs) == 2
+    assert len(show_cells(cells, silent=False)[1]["examples"].subfigs) == 1
 
 
 def test_another_nose_is_another_map_of_the_same_walks(trial: Trial) -> None:

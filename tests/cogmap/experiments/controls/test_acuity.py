@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from arena import Arena
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments import Conditions, poses_of
 from cogmap.experiments.controls.acuity import acuity, explore_at_acuity
 
 

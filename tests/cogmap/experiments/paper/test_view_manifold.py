@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from arena import Arena, Camera, Rotation
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments import Conditions, poses_of
 from cogmap.experiments.paper.view_manifold import ViewManifold, view_manifold
 
 
