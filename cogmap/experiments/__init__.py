@@ -1,7 +1,7 @@
 """Experiments, one file each: data in, table and figures out."""
 
 from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.poses import pose_columns, pose_errors, poses_of
+from cogmap.experiments.poses import pose_columns, pose_errors
 from cogmap.experiments.registry import experiment
 from cogmap.experiments.result import Result
 from cogmap.experiments.trial import Trial, show_cells
@@ -13,6 +13,5 @@ __all__ = [
     "experiment",
     "pose_columns",
     "pose_errors",
-    "poses_of",
     "show_cells",
 ]

@@ -1,19 +1,11 @@
-"""Poses, the truth about views: out of a recording, into columns of tables, and beside what was read."""
+"""Poses, the truth about views: as columns of tables, and beside what was read."""
 
 from __future__ import annotations
 
 import numpy as np
 from jaxtyping import Float
 
-from arena import Recording
 from arena.angles import wrap_angle
-
-
-def poses_of(recording: Recording) -> Float[np.ndarray, "views 3"]:
-    """Ground truth, which `explore` always records."""
-    if recording.poses is None:
-        raise ValueError("a fresh recording has poses")
-    return recording.poses
 
 
 def pose_columns(poses: Float[np.ndarray, "views 3"], prefix: str = "") -> dict[str, np.ndarray]:

@@ -15,7 +15,6 @@ from cogmap.evaluation.ground_truth import CellMetrics, GroundTruth, as_one_tabl
 from cogmap.evaluation.populations import grow_map, perceive, reachable_places
 from cogmap.evaluation.scoring import score
 from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.poses import poses_of
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.plots import plot_cell_types, plot_examples
@@ -50,9 +49,9 @@ class Trial:
     @cached_property
     def truth(self) -> GroundTruth:
         """Where both walks really led."""
-        train = poses_of(self.walk)
+        train = self.walk.require("poses")
         reachable = train[:, :2] if self.reachable is None else self.reachable
-        return GroundTruth(train, poses_of(self.fresh), reachable)
+        return GroundTruth(train, self.fresh.require("poses"), reachable)
 
     @cached_property
     def cmap(self) -> CognitiveMap:

@@ -13,7 +13,7 @@ from cogmap.cells import RateMaps, Tuning, bin_edges, mean_vectors, rate_maps, t
 from cogmap.errors import CogmapError
 from cogmap.evaluation.ground_truth import map_correlations
 from cogmap.evaluation.populations import grow_map, perceive, trust_report
-from cogmap.experiments import Conditions, Result, experiment, poses_of
+from cogmap.experiments import Conditions, Result, experiment
 from cogmap.plots import plot_examples
 
 PLATFORM, ROOM = 1.5, 2.5
@@ -116,6 +116,6 @@ def turned(maps: RateMaps, turns: int) -> RateMaps:
 
 def _tuning(rates: Float[np.ndarray, "views cells"], walk: Recording) -> Tuning:
     """Rate maps and tuning curves; a cell without a compass, of rate NaN, is silent."""
-    rates, poses = np.nan_to_num(rates), poses_of(walk)
+    rates, poses = np.nan_to_num(rates), walk.require("poses")
     edges = bin_edges(PLATFORM * np.array(CORNERS, dtype=float))
     return Tuning(rate_maps(rates, poses[:, :2], edges=edges), tuning_curves(rates, poses[:, 2]))

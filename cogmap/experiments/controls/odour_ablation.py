@@ -10,7 +10,7 @@ import pandas as pd
 
 from arena import Arena, Nose, Recording
 from cogmap.evaluation.populations import trust_report
-from cogmap.experiments import Conditions, Result, Trial, experiment, poses_of
+from cogmap.experiments import Conditions, Result, Trial, experiment
 from cogmap.experiments.conditions import FRESH_SEED
 from cogmap.plots import plot_cases
 
@@ -48,7 +48,7 @@ def odour_ablation(conditions: Conditions, *, noises: tuple[float, ...] = (0.0, 
 def smell(room: Arena, walk: Recording, *, count: int, noise: float, seed: int) -> np.ndarray:
     """Smell so many sources in a room on a walk that has been taken."""
     scented = room.model_copy(update={"sources": [{"position": place} for place in PLACES[:count]]})
-    concentration = scented.odours.concentration(poses_of(walk)[:, :2])
+    concentration = scented.odours.concentration(walk.require("poses")[:, :2])
     return Nose(noise=noise).smell(concentration, walk.times, np.random.default_rng(seed))
 
 

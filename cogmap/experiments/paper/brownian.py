@@ -11,7 +11,7 @@ from arena import Brownian, Camera
 from arena.angles import wrap_angle
 from cogmap import plots
 from cogmap.evaluation.quasi_metric import quasi_metric
-from cogmap.experiments import Conditions, Result, experiment, poses_of
+from cogmap.experiments import Conditions, Result, experiment
 from cogmap.experiments.paper.view_manifold import view_manifold
 from cogmap.shape import LandmarkIsomap
 
@@ -26,7 +26,7 @@ def brownian(conditions: Conditions, *, components: int = 4, held_out: float = 0
     folded; `held_out` is a share of the views.
     """
     walk = conditions.explore(Brownian(), Camera.perspective())
-    poses = poses_of(walk)
+    poses = walk.require("poses")
     found = view_manifold(walk.views, conditions)
     order = np.random.default_rng(conditions.seed).permutation(len(poses))
     held, train = np.split(order, [round(held_out * len(poses))])

@@ -7,7 +7,7 @@ import numpy as np
 from arena import Camera, Cyclic
 from cogmap import plots
 from cogmap.evaluation.quasi_metric import quasi_metric
-from cogmap.experiments import Conditions, Result, experiment, poses_of
+from cogmap.experiments import Conditions, Result, experiment
 from cogmap.experiments.paper.view_manifold import view_manifold
 from cogmap.shape import height_coordinate
 
@@ -20,7 +20,7 @@ def cyclic(conditions: Conditions) -> Result:
     went to and fro on, which is the first principal axis of its positions.
     """
     walk = conditions.explore(Cyclic(), Camera.perspective())
-    poses = poses_of(walk)
+    poses = walk.require("poses")
     found = view_manifold(walk.views, conditions)
     # The two ends of the cylinder show in four coordinates; later ones bend it.
     height = height_coordinate(found.graph, found.embedding[:, :4], found.phase)

@@ -13,7 +13,7 @@ from sklearn.decomposition import PCA
 
 from arena import Arena, Brownian, Camera
 from cogmap.evaluation.pose_agreement import motion_distances
-from cogmap.experiments import Conditions, Result, experiment, pose_columns, poses_of
+from cogmap.experiments import Conditions, Result, experiment, pose_columns
 from cogmap.graph import nearest_points
 from cogmap.plots import plot_barcodes, plot_confusion, plot_views
 from cogmap.shape import Betti, betti
@@ -71,8 +71,8 @@ def _look(conditions: Conditions, room: Arena, queries: int) -> _Seen:
     walk = here.explore(Brownian(), strips)
     fresh = here.explore(Brownian(), strips, views=min(queries, conditions.views), fresh=True)
     train, test = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), conditions.seed)
-    nearest = poses_of(walk)[nearest_points(train, 1, queries=test).indices[:, 0]]
-    poses = poses_of(fresh)
+    nearest = walk.require("poses")[nearest_points(train, 1, queries=test).indices[:, 0]]
+    poses = fresh.require("poses")
     opposite = _opposite(room, poses)
     confused = _apart(nearest, opposite) < _apart(nearest, poses)
     first = np.stack([poses[0], opposite[0]])

@@ -13,7 +13,7 @@ from arena import Arena, Brownian, Camera, Chemotaxis, Disc, Recording
 from cogmap.cells import fit_heading_frame, heading_errors
 from cogmap.evaluation.ground_truth import GroundTruth
 from cogmap.evaluation.populations import reachable_places
-from cogmap.experiments import Conditions, Result, experiment, pose_columns, poses_of, show_cells
+from cogmap.experiments import Conditions, Result, experiment, pose_columns, show_cells
 from cogmap.experiments.paper.distinguishability import retina_codes
 from cogmap.graph import nearest_points, neighbour_graph
 from cogmap.plots import plot_goals
@@ -43,7 +43,7 @@ def goals(conditions: Conditions) -> Result:
     visits = [_visit(conditions, goal, camera, count) for goal in goal_grid(conditions.room)]
     fresh = conditions.explore(Brownian(), camera, fresh=True)
     seen = np.concatenate([np.asarray(visit.views) for visit in visits])
-    poses = np.concatenate([poses_of(visit) for visit in visits])
+    poses = np.concatenate([visit.require("poses") for visit in visits])
     ring = np.repeat(np.arange(len(visits)), [len(visit) for visit in visits])
     codes, test = retina_codes(seen, np.asarray(fresh.views), conditions.seed)
     place = ring_distances(test, codes, ring)
@@ -55,8 +55,8 @@ def goals(conditions: Conditions) -> Result:
     orientation = spread_orientation(codes, ring, order)
     nearest = nearest_points(codes, 1, queries=test).indices[:, 0]
     turn = _aligned(orientation, poses[:, 2])
-    read = _aligned(orientation[nearest], poses_of(fresh)[:, 2])
-    truth = GroundTruth(poses, poses_of(fresh), reachable_places(conditions.room, Disc()))
+    read = _aligned(orientation[nearest], fresh.require("poses")[:, 2])
+    truth = GroundTruth(poses, fresh.require("poses"), reachable_places(conditions.room, Disc()))
     cells = {
         "rings, place": truth.measure(PEAK * np.exp(-0.5 * (place / width) ** 2)),
         "rings, heading": truth.measure(orientation_rates(orientation[nearest])),

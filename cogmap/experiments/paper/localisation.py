@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from arena import Brownian, Camera
 from arena.angles import wrap_angle
-from cogmap.experiments import Conditions, Result, experiment, pose_columns, pose_errors, poses_of
+from cogmap.experiments import Conditions, Result, experiment, pose_columns, pose_errors
 from cogmap.features import BagOfWords
 from cogmap.navigation import Localiser, Location, image_codes
 from cogmap.plots import plot_localisation, plot_neighbours
@@ -30,7 +30,7 @@ def localisation(conditions: Conditions, *, noise: float = 0.01) -> Result:
     words = BagOfWords(seed=conditions.seed, progress=conditions.progress)
     localiser = Localiser(words.fit_transform(walk.views), codes=image_codes(walk.views))
     found = localiser.locate(words.transform(fresh.views), codes=image_codes(fresh.views))
-    train, truth = poses_of(walk), poses_of(fresh)
+    train, truth = walk.require("poses"), fresh.require("poses")
     read = interpolated_poses(found, train)
     placed = found.indices[:, 0] >= 0
     nearest = np.where(placed[:, None], train[found.indices[:, 0]], np.nan)

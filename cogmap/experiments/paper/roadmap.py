@@ -17,7 +17,7 @@ from cogmap.errors import CogmapError
 from cogmap.evaluation.deviation import path_deviation, path_length
 from cogmap.evaluation.peers.prm import prm_paths
 from cogmap.evaluation.shortest import shortest_lengths
-from cogmap.experiments import Conditions, Result, experiment, pose_columns, poses_of
+from cogmap.experiments import Conditions, Result, experiment, pose_columns
 from cogmap.navigation import PanoramaCode, VisualRoadmap
 from cogmap.plots import plot_routes, plot_views
 
@@ -47,7 +47,7 @@ def roadmap(conditions: Conditions) -> Result:
     """
     room, body, around = conditions.room, Disc(), Camera.panoramic(120, 20)
     walk = conditions.explore(Brownian(), around, body=Disc(radius=body.radius + 0.03))
-    poses = poses_of(walk)
+    poses = walk.require("poses")
     pairs = draw_pairs(room, body.radius, conditions.seed)
     started = time.perf_counter()
     code = PanoramaCode()

@@ -16,7 +16,7 @@ from sklearn.preprocessing import StandardScaler
 from arena import Camera, Rotation
 from arena.angles import wrap_angle
 from cogmap.evaluation.quasi_metric import quasi_metric
-from cogmap.experiments import Conditions, Result, experiment, poses_of
+from cogmap.experiments import Conditions, Result, experiment
 from cogmap.experiments.paper.view_manifold import view_manifold
 from cogmap.plots import plot_barcodes, plot_compass, plot_embedding, plot_quasi_metric, plot_views
 from cogmap.threads import one_thread
@@ -26,7 +26,7 @@ from cogmap.threads import one_thread
 def rotation(conditions: Conditions) -> Result:
     """Fig. 1 and Table 2: spin, find the ring, and predict the heading from coordinates on the manifold."""
     walk = conditions.explore(Rotation(), Camera.perspective())
-    poses = poses_of(walk)
+    poses = walk.require("poses")
     found = view_manifold(walk.views, conditions)
     fit = predict_headings(found.embedding, poses[:, 2], conditions.seed)
     test = fit[fit["split"] == "test"]

@@ -10,7 +10,7 @@ from jaxtyping import Float, Int
 
 from arena import Brownian, Camera
 from cogmap.evaluation.pose_agreement import motion_distances, pose_agreement
-from cogmap.experiments import Conditions, Result, experiment, pose_errors, poses_of
+from cogmap.experiments import Conditions, Result, experiment, pose_errors
 from cogmap.features import BagOfWords, cosine_distances, earth_mover_distances, pixel_distances
 from cogmap.plots import plot_likeness
 
@@ -27,7 +27,7 @@ def similarity(conditions: Conditions, *, queries: int = 500, neighbours: int = 
     count = min(queries, conditions.views)
     walk = conditions.explore(Brownian(), ahead)
     fresh = conditions.explore(Brownian(), ahead, views=count, fresh=True)
-    poses, test = poses_of(walk), poses_of(fresh)
+    poses, test = walk.require("poses"), fresh.require("poses")
     words = BagOfWords(seed=conditions.seed, progress=conditions.progress)
     train = words.fit_transform(walk.views)
     distances = {

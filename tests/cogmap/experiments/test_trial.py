@@ -7,7 +7,7 @@ from arena import Arena, Camera, Disc, Rotation
 from cogmap.cells import position_errors
 from cogmap.evaluation.ground_truth import as_one_table
 from cogmap.evaluation.scoring import score
-from cogmap.experiments import Conditions, poses_of
+from cogmap.experiments import Conditions
 from cogmap.experiments.trial import Trial, show_cells
 
 CONDITIONS = Conditions(Arena.load("furnished"), 1200, seed=1)
@@ -20,9 +20,9 @@ def trial() -> Trial:
 
 def test_it_is_two_walks_a_map_and_the_truth(trial: Trial) -> None:
     assert len(trial.walk) == len(trial.fresh) == 1200
-    assert not np.array_equal(poses_of(trial.walk), poses_of(trial.fresh))
-    np.testing.assert_array_equal(trial.truth.train, poses_of(trial.walk))
-    np.testing.assert_array_equal(trial.truth.poses, poses_of(trial.fresh))
+    assert not np.array_equal(trial.walk.require("poses"), trial.fresh.require("poses"))
+    np.testing.assert_array_equal(trial.truth.train, trial.walk.require("poses"))
+    np.testing.assert_array_equal(trial.truth.poses, trial.fresh.require("poses"))
     assert (trial.cmap.charts, trial.cmap.seed) == (400, 1)
     np.testing.assert_array_equal(trial.codes[1], trial.cmap.encode(trial.fresh.views))
     assert trial.place.rates.shape == trial.test.place.shape
@@ -75,4 +75,4 @@ def test_conditions_go_before_what_it_is_told() -> None:
     usual = Trial.of(replace(CONDITIONS, views=60), Rotation(), camera=Camera.panoramic(12, 2))
     assert small.walk.attributes["body"]["radius"] == 0.05
     assert np.ptp(small.truth.reachable, axis=0).min() > np.ptp(usual.truth.reachable, axis=0).min() + 0.2
-    assert np.ptp(poses_of(usual.walk)[:, :2]) < np.ptp(poses_of(small.walk)[:, :2])
+    assert np.ptp(usual.walk.require("poses")[:, :2]) < np.ptp(small.walk.require("poses")[:, :2])
