@@ -64,20 +64,11 @@ class Conditions:
         if views is None:
             views = min(5000, self.views) if fresh else self.views
         seed = self.seed + FRESH_SEED * fresh
-        walk = partial(
-            explore,
-            self.room,
-            way,
-            eye,
-            body=body,
-            nose=self.nose,
-            views=views,
-            seed=seed,
-            progress=self.progress,
-        )
+        walk = partial(explore, self.room, way, eye, body=body, nose=self.nose, views=views, seed=seed)
         if self.library is None:
-            return walk(out=self.scratch and Path(mkdtemp(dir=self.scratch)) / "walk.zarr")
+            out = None if self.scratch is None else Path(mkdtemp(dir=self.scratch)) / "walk.zarr"
+            return walk(out=out, progress=self.progress)
         described = repr((self.room, way, eye, body, self.nose, views, seed))
         shelf = self.library / hashlib.sha256(described.encode()).hexdigest()[:32]
         with FileLock(shelf.with_suffix(".lock")):
-            return walk(out=shelf.with_suffix(".zarr"))
+            return walk(out=shelf.with_suffix(".zarr"), progress=self.progress)
