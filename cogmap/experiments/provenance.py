@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from arena import Arena, gallery
+from arena.atomic import atomic_write
 from cogmap.portable import arithmetic
 
 PROVENANCE = "about.json"
@@ -45,7 +46,8 @@ def write_provenance(folder: Path, words: tuple[str, ...], room: Arena | None, *
         "versions": {"python": platform.python_version(), **{name: _version(name) for name in PACKAGES}},
         "arithmetic": arithmetic(),
     }
-    (folder / PROVENANCE).write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
+    with atomic_write(folder / PROVENANCE) as fresh:
+        fresh.write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
 
 
 def _where(folder: Path, room: Arena | None) -> tuple[str, ...]:

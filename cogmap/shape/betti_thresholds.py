@@ -18,6 +18,7 @@ from jaxtyping import Float
 from scipy.interpolate import RegularGridInterpolator
 from tqdm import tqdm
 
+from cogmap.atomic import atomic_write
 from cogmap.shape.rips import euclidean, farthest_points, geodesic, ratios, rips_bars
 
 Metric = Literal["geodesic", "euclidean"]
@@ -164,7 +165,8 @@ def main() -> None:
     parser.add_argument("--clouds", type=int, default=CLOUDS, help="cubes per dimension and size")
     arguments = parser.parse_args()
     text = json.dumps(simulate_table(arguments.clouds), indent=1)
-    arguments.out.write_text(text + "\n", encoding="utf-8")
+    with atomic_write(arguments.out) as fresh:
+        fresh.write_text(text + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
