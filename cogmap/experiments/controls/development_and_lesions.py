@@ -43,7 +43,7 @@ class Seen(NamedTuple):
         turned = np.angle(np.exp(1j * (np.arctan2(sine, cosine) - truth.poses[:, 2])))
         return {
             "place_cells_passing": self.place.place_figures["place_cells_passing"],
-            "place_coverage": self.place.place_coverage,
+            "place_coverage": self.place.place_figures["place_coverage"],
             "heading_cells_passing": self.heading.heading_figures["heading_cells_passing"],
             **truth.position(self.train[0], self.place.rates),
             "heading_median_deg": float(np.rad2deg(np.median(np.abs(turned)))),
