@@ -1,7 +1,5 @@
 """The stages of learning, critical periods one after the other: what each teaches, how long, from what."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from contextlib import suppress
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Bags of visual words: a view as the set of words it shows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, TypeVar
@@ -91,7 +89,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
         self.workers = workers
         self.progress = progress
 
-    def fit(self, X: Any, y: object = None) -> BagOfWords:
+    def fit(self, X: Any, y: object = None) -> "BagOfWords":
         """Learn the words of views, and how rare each is."""
         self.fit_transform(X, y)
         return self
@@ -132,11 +130,11 @@ class BagOfWords(TransformerMixin, BaseEstimator):
     def _words(self) -> tuple[Rows, Rows]:
         return self.vocabulary_, self.palette_
 
-    def _bar(self, X: Any) -> tqdm[Any]:
+    def _bar(self, X: Any) -> "tqdm[Any]":
         return tqdm(total=X.shape[0], unit="view", disable=not self.progress)
 
     def _over(
-        self, work: Callable[[Images], Result], X: Any, blocks: list[slice], bar: tqdm[Any]
+        self, work: Callable[[Images], Result], X: Any, blocks: list[slice], bar: "tqdm[Any]"
     ) -> Iterator[Result]:
         """Work on blocks of views, in order."""
         # OpenCV and BLAS release the interpreter: threads save carrying views to other processes.

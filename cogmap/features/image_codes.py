@@ -1,7 +1,5 @@
 """Image codes: views as small blurred pictures, which change smoothly from pose to pose."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import cv2

@@ -1,7 +1,5 @@
 """Distances between images: how different two views are, by pixels, words or the work of moving light."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

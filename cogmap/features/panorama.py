@@ -1,7 +1,5 @@
 """Panorama codes: points whose distance is that of the poses they were taken from, up to scale."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -55,7 +53,7 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         self.turning = turning
         self.neighbours = neighbours
 
-    def fit(self, X: Any, y: object = None) -> PanoramaCode:
+    def fit(self, X: Any, y: object = None) -> "PanoramaCode":
         """Learn components and north from panoramas, uint8 (views, height, width, 3)."""
         self.fit_transform(X, y)
         return self

@@ -1,7 +1,5 @@
 """Point clouds: one row a point, dense or sparse."""
 
-from __future__ import annotations
-
 from typing import NamedTuple, TypeAlias
 
 import numpy as np

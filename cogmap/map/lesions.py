@@ -1,7 +1,5 @@
 """Lesions: the state of a map by the names it is saved under, and copies with some of it changed."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from copy import deepcopy
 

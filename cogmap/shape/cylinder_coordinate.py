@@ -1,7 +1,5 @@
 """The height coordinate of a cylinder, which its loop leaves over."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float

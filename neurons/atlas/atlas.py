@@ -1,7 +1,5 @@
 """The atlas: which charts overlap, how far apart they lie, and the displacement across each overlap."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import torch
@@ -28,7 +26,7 @@ class Atlas:
     spacing: Float[Tensor, "charts"]
 
     @classmethod
-    def of(cls, centres: Float[Tensor, "charts components"], *, overlaps: int = 8, pool: int = 12) -> Atlas:
+    def of(cls, centres: Float[Tensor, "charts components"], *, overlaps: int = 8, pool: int = 12) -> "Atlas":
         """Find the neighbourhoods of chart centres.
 
         Parameters

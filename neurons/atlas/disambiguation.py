@@ -1,7 +1,5 @@
 """Disambiguation of a smell at two places: a place unit keeps to one, where its charts hang together."""
 
-from __future__ import annotations
-
 import numpy as np
 import torch
 from jaxtyping import Bool, Complex, Float, Int

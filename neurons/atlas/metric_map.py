@@ -58,16 +58,6 @@ class MetricMap(nn.Module):
     Boumal (2016), Nonconvex phase synchronization. SIAM J. Optimization 26 (the power iteration).
     """
 
-    spread: Tensor
-    ahead: Tensor
-    shared: Tensor
-    counted: Tensor
-    seen: Tensor
-    recent: Tensor
-    cross_validated_r2: Tensor
-    positions: Tensor
-    offsets: Tensor
-
     def __init__(
         self,
         cells: int,
@@ -81,18 +71,15 @@ class MetricMap(nn.Module):
         super().__init__()
         self.lag, self.straight, self.ridge, self.least_r2 = lag, straight, ridge, least_r2
         features = cells * (odorants + 1)
-        for name, shape in {
-            "spread": (features, features),
-            "ahead": (cells, features, 2),
-            "shared": (cells, cells),
-            "counted": (2,),
-        }.items():
-            self.register_buffer(name, torch.zeros(2, *shape, dtype=torch.double))
-        self.register_buffer("seen", torch.zeros((), dtype=torch.int64))
-        self.register_buffer("recent", torch.full((lag, odorants + 1), torch.nan))
-        self.register_buffer("cross_validated_r2", torch.full((2,), torch.nan))
-        self.register_buffer("positions", torch.full((features, 2), torch.nan))
-        self.register_buffer("offsets", torch.zeros(cells))
+        self.spread: Tensor = nn.Buffer(torch.zeros(2, features, features, dtype=torch.double))
+        self.ahead: Tensor = nn.Buffer(torch.zeros(2, cells, features, 2, dtype=torch.double))
+        self.shared: Tensor = nn.Buffer(torch.zeros(2, cells, cells, dtype=torch.double))
+        self.counted: Tensor = nn.Buffer(torch.zeros(2, 2, dtype=torch.double))
+        self.seen: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
+        self.recent: Tensor = nn.Buffer(torch.full((lag, odorants + 1), torch.nan))
+        self.cross_validated_r2: Tensor = nn.Buffer(torch.full((2,), torch.nan))
+        self.positions: Tensor = nn.Buffer(torch.full((features, 2), torch.nan))
+        self.offsets: Tensor = nn.Buffer(torch.zeros(cells))
 
     def forward(self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]) -> MetricReading:
         """Tell the position of smells and the offset of the compass there."""

@@ -1,7 +1,5 @@
 """Synchronisation of signs, then phases, over the atlas: lateral weights turn local axes into one compass."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

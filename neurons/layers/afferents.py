@@ -20,13 +20,10 @@ class Afferents(nn.Module):
     (outstar rule).
     """
 
-    association: Tensor
-    activity: Tensor
-
     def __init__(self, charts: int, cells: int) -> None:
         super().__init__()
-        self.register_buffer("association", torch.zeros(charts, cells))
-        self.register_buffer("activity", torch.zeros(charts))
+        self.association: Tensor = nn.Buffer(torch.zeros(charts, cells))
+        self.activity: Tensor = nn.Buffer(torch.zeros(charts))
 
     @property
     def weights(self) -> Float[Tensor, "charts cells"]:

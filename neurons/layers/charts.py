@@ -40,20 +40,14 @@ class Charts(nn.Module):
     Kambhatla & Leen (1997), Dimension reduction by local principal component analysis. Neural Computation 9.
     """
 
-    centres: Tensor
-    tangents: Tensor
-    responsibility: Tensor
-    variances: Tensor
-    initialised: Tensor
-
     def __init__(self, charts: int, components: int, *, generator: torch.Generator) -> None:
         super().__init__()
         draws = torch.randn(charts, components, DIMENSIONS, generator=generator)
-        self.register_buffer("centres", torch.zeros(charts, components))
-        self.register_buffer("tangents", torch.linalg.qr(draws).Q.mT.contiguous())
-        self.register_buffer("responsibility", torch.zeros(charts))
-        self.register_buffer("variances", torch.zeros(charts, DIMENSIONS))
-        self.register_buffer("initialised", torch.zeros((), dtype=torch.int64))
+        self.centres: Tensor = nn.Buffer(torch.zeros(charts, components))
+        self.tangents: Tensor = nn.Buffer(torch.linalg.qr(draws).Q.mT.contiguous())
+        self.responsibility: Tensor = nn.Buffer(torch.zeros(charts))
+        self.variances: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS))
+        self.initialised: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
 
     def __len__(self) -> int:
         return len(self.centres)

@@ -27,9 +27,6 @@ class HeadDirectionCells(nn.Module):
         Rate at the preferred direction, Hz.
     """
 
-    preferred: Tensor
-    responsibility: Tensor
-
     def __init__(
         self,
         cells: int,
@@ -41,8 +38,8 @@ class HeadDirectionCells(nn.Module):
     ) -> None:
         super().__init__()
         self.concentration, self.peak = concentration, peak
-        self.register_buffer("preferred", 2 * torch.pi * torch.rand(cells, generator=generator) - torch.pi)
-        self.register_buffer("responsibility", torch.zeros(cells))
+        self.preferred: Tensor = nn.Buffer(2 * torch.pi * torch.rand(cells, generator=generator) - torch.pi)
+        self.responsibility: Tensor = nn.Buffer(torch.zeros(cells))
         self.afferents = Afferents(charts, cells)
 
     def compete(self, headings: Float[Tensor, "views"], *, window: float, winners: int = 3) -> None:

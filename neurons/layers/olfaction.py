@@ -23,14 +23,11 @@ class Olfaction(nn.Module):
         line has no slope across it.
     """
 
-    gram: Tensor
-    cross: Tensor
-
     def __init__(self, charts: int, odorants: int, *, ridge: float = 1e-3) -> None:
         super().__init__()
         self.ridge = ridge
-        self.register_buffer("gram", torch.zeros(charts, DIMENSIONS + 1, DIMENSIONS + 1, dtype=torch.double))
-        self.register_buffer("cross", torch.zeros(charts, DIMENSIONS + 1, odorants, dtype=torch.double))
+        self.gram: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS + 1, DIMENSIONS + 1, dtype=torch.double))
+        self.cross: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS + 1, odorants, dtype=torch.double))
 
     def partial_fit(
         self,

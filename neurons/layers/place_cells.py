@@ -36,22 +36,16 @@ class PlaceCells(nn.Module):
         a direction in which its smells hardly vary a unit would else fire in a sheet without width.
     """
 
-    centres: Tensor
-    covariances: Tensor
-    responsibility: Tensor
-    initialised: Tensor
-    branches: Tensor
-
     def __init__(
         self, cells: int, charts: int, odorants: int, *, peak: float = 20.0, flatness: float = 0.05
     ) -> None:
         super().__init__()
         self.peak, self.flatness = peak, flatness
-        self.register_buffer("centres", torch.zeros(cells, odorants))
-        self.register_buffer("covariances", torch.eye(odorants).repeat(cells, 1, 1))
-        self.register_buffer("responsibility", torch.zeros(cells))
-        self.register_buffer("initialised", torch.zeros((), dtype=torch.int64))
-        self.register_buffer("branches", torch.ones(charts, cells, dtype=torch.bool))
+        self.centres: Tensor = nn.Buffer(torch.zeros(cells, odorants))
+        self.covariances: Tensor = nn.Buffer(torch.eye(odorants).repeat(cells, 1, 1))
+        self.responsibility: Tensor = nn.Buffer(torch.zeros(cells))
+        self.initialised: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
+        self.branches: Tensor = nn.Buffer(torch.ones(charts, cells, dtype=torch.bool))
         self.afferents = Afferents(charts, cells)
 
     def compete(

@@ -39,22 +39,16 @@ class Readout(nn.Module):
         charts hears several, narrow enough that none speaks where its tangents no longer fit.
     """
 
-    spacing: Tensor
-    phases: Tensor
-    turning: Tensor
-    intercepts: Tensor
-    jacobians: Tensor
-
     def __init__(
         self, charts: int, components: int, odorants: int, *, winners: int = 8, breadth: float = 0.7
     ) -> None:
         super().__init__()
         self.winners, self.breadth = winners, breadth
-        self.register_buffer("spacing", torch.ones(charts))
-        self.register_buffer("phases", torch.full((charts,), torch.nan))
-        self.register_buffer("turning", torch.full((charts, components), torch.nan))
-        self.register_buffer("intercepts", torch.full((charts, odorants), torch.nan))
-        self.register_buffer("jacobians", torch.full((charts, DIMENSIONS, odorants), torch.nan))
+        self.spacing: Tensor = nn.Buffer(torch.ones(charts))
+        self.phases: Tensor = nn.Buffer(torch.full((charts,), torch.nan))
+        self.turning: Tensor = nn.Buffer(torch.full((charts, components), torch.nan))
+        self.intercepts: Tensor = nn.Buffer(torch.full((charts, odorants), torch.nan))
+        self.jacobians: Tensor = nn.Buffer(torch.full((charts, DIMENSIONS, odorants), torch.nan))
 
     def solve(
         self,

@@ -58,11 +58,6 @@ class Retina(nn.Module):
     Heeger (1992), Normalization of cell responses in cat striate cortex. Visual Neuroscience 9.
     """
 
-    average: Tensor
-    centre_surround: Tensor
-    pooling: Tensor
-    blur: Tensor
-
     def __init__(
         self,
         height: int,
@@ -87,13 +82,12 @@ class Retina(nn.Module):
         # both blurs in one matrix, as their difference is linear: one product per view
         blur = _circular_gaussian(columns, acuity)
         differences = blur - _circular_gaussian(columns, surround)
-        for name, matrix in {
-            "average": _area_average(height, rows),
-            "centre_surround": _area_average(width, columns).T @ differences,
-            "pooling": _circular_gaussian(columns, pool),
-            "blur": blur,
-        }.items():
-            self.register_buffer(name, matrix, persistent=False)
+        # not saved with a map: they follow from the size of its views
+        self.average: Tensor = nn.Buffer(_area_average(height, rows), persistent=False)
+        centre_surround = _area_average(width, columns).T @ differences
+        self.centre_surround: Tensor = nn.Buffer(centre_surround, persistent=False)
+        self.pooling: Tensor = nn.Buffer(_circular_gaussian(columns, pool), persistent=False)
+        self.blur: Tensor = nn.Buffer(blur, persistent=False)
 
     def forward(self, views: UInt8[Tensor, "views height width 3"]) -> Float[Tensor, "views features"]:
         """Turn views into normalised strips, rows × colours × columns."""

@@ -31,18 +31,13 @@ class Sanger(nn.Module):
     (the rate).
     """
 
-    mean: Tensor
-    weight: Tensor
-    variance: Tensor
-    steps: Tensor
-
     def __init__(self, features: int, components: int, *, generator: torch.Generator) -> None:
         super().__init__()
         initial = torch.linalg.qr(torch.randn(features, components, generator=generator)).Q.T
-        self.register_buffer("mean", torch.zeros(features))
-        self.register_buffer("weight", initial.contiguous())
-        self.register_buffer("variance", torch.zeros(components))
-        self.register_buffer("steps", torch.zeros((), dtype=torch.int64))
+        self.mean: Tensor = nn.Buffer(torch.zeros(features))
+        self.weight: Tensor = nn.Buffer(initial.contiguous())
+        self.variance: Tensor = nn.Buffer(torch.zeros(components))
+        self.steps: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
 
     def forward(self, x: Float[Tensor, "views features"]) -> Float[Tensor, "views components"]:
         """Project onto the components learnt so far."""
