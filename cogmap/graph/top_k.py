@@ -6,8 +6,8 @@ import numpy as np
 from numba import njit
 
 
-# Compiled anew by each process, in half a second: numba's own cache wants a folder that can be written, and that
-# of `arena.kernels` a package that graphs may not know. Partitions by numpy take five times as long.
+# Compiled anew by each process, in half a second: numba's own cache wants a folder that can be written, and
+# that of `arena.kernels` a package that graphs may not know. Partitions by numpy take five times as long.
 @njit(nogil=True)
 @typing.no_type_check
 def offer(scores: np.ndarray, best: np.ndarray, names: np.ndarray, first: int, axis: int) -> None:

@@ -271,15 +271,15 @@ class CognitiveMap:
         CogmapError
             When something is at the path already, or it cannot be written.
         """
-        weights = self.state_dict()
+        network = self._grown
         learnt = {
             "view_shape": self.view_shape_,
             "odorants": self.odorants_,
-            "epoch": self._network.epoch,
-            "charts": len(self._network.charts),
+            "epoch": network.epoch,
+            "charts": len(network.charts),
         }
         settings = {field.name: getattr(self, field.name) for field in fields(self)}
-        write_map(Path(path), weights, settings, learnt)
+        write_map(Path(path), network.state_dict(), settings, learnt)
 
     @classmethod
     def load(cls, path: str | Path) -> CognitiveMap:

@@ -117,5 +117,4 @@ def _codes(codes: Cloud, views: int) -> Float[np.ndarray, "views codes"]:
     checked = checked_cloud(codes)
     if checked.shape[0] != views:
         raise CogmapError(f"there are {checked.shape[0]} codes but {views} views; give one code per view")
-    dense: np.ndarray = checked.toarray() if sp.issparse(checked) else checked
-    return dense
+    return np.asarray(checked.toarray() if sp.issparse(checked) else checked)

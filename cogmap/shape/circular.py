@@ -103,8 +103,7 @@ def _smooth_cocycle(
     integers -= integers.T
     starts, ends = np.nonzero(np.triu(distances <= scale, 1))
     difference = edge_differences(starts, ends, len(distances))
-    solution: np.ndarray = lsqr(difference, -integers[starts, ends], atol=1e-10, btol=1e-10)[0]
-    return 2 * np.pi * solution
+    return np.asarray(2 * np.pi * lsqr(difference, -integers[starts, ends], atol=1e-10, btol=1e-10)[0])
 
 
 def _spread_out(
@@ -125,7 +124,5 @@ def _harmonic(graph: sp.csr_array, phase: Float[np.ndarray, "points"]) -> Float[
     step = phase[ends] - phase[starts]
     turns = np.round(step / (2 * np.pi))
     difference = edge_differences(starts, ends, len(phase))
-    smooth: np.ndarray = cg(
-        difference.T @ difference, difference.T @ (2 * np.pi * turns), x0=phase, rtol=1e-6
-    )[0]
-    return smooth
+    pull = difference.T @ (2 * np.pi * turns)
+    return np.asarray(cg(difference.T @ difference, pull, x0=phase, rtol=1e-6)[0])

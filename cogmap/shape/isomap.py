@@ -34,8 +34,7 @@ class PieceMap(NamedTuple):
         self, paths: Float[np.ndarray, "landmarks places"]
     ) -> Float[np.ndarray, "places components"]:
         """Give the coordinates of what is so far from the landmarks."""
-        placed: np.ndarray = (self.axes @ (paths**2 - self.mean[:, None])).T
-        return placed
+        return np.asarray((self.axes @ (paths**2 - self.mean[:, None])).T)
 
 
 class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimator):

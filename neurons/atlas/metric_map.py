@@ -118,12 +118,9 @@ class MetricMap(nn.Module):
         if min(half.pairs for half in halves) < len(self.offsets):
             return
         one, other = halves
-        self.cross_validated_r2 = torch.tensor(
-            [
-                one.cross_validated_r2(*other.solve(self.ridge)),
-                other.cross_validated_r2(*one.solve(self.ridge)),
-            ]
-        ).float()
+        crossed = ((one, other), (other, one))
+        foretold = [mine.cross_validated_r2(*its.solve(self.ridge)) for mine, its in crossed]
+        self.cross_validated_r2 = torch.tensor(foretold)
         if not self.diagnosis():
             positions, turns = self._evidence(slice(0, 2)).solve(self.ridge)
             self.positions = torch.view_as_real(positions).float()

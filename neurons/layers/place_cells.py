@@ -107,10 +107,9 @@ class PlaceCells(nn.Module):
 
     def share(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
         """Give each cell's part of the rate of all, r_i / Σ r, also where every rate is next to nothing."""
-        shares = log_odours.new_empty(len(log_odours), len(self.centres))
-        for exponent, part in zip(self._exponents(log_odours), shares.split(BLOCK), strict=True):
-            part.copy_(torch.softmax(exponent, dim=1))
-        return shares
+        # softmax takes the largest exponent away: far from all centres rates are 0, and their shares 0 / 0
+        shares = [torch.softmax(exponent, dim=1) for exponent in self._exponents(log_odours)]
+        return torch.cat(shares).to(log_odours.dtype)
 
     def _exponents(self, log_odours: Float[Tensor, "views odorants"]) -> Iterator[Float[Tensor, "_ cells"]]:
         """Give −½ (o − c)ᵀ P (o − c), P = Σ⁻¹, block by block.
