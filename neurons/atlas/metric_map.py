@@ -106,14 +106,17 @@ class MetricMap(nn.Module):
             mine = straight & (half == number)
             v, w, u = moved[mine].double(), under[mine].double(), direction[mine].to(torch.cdouble)
             self.spread[number] += v.T @ v
+            # v is real: two real products, where half of a complex one would be wasted
             back = (w[:, :, None] * torch.view_as_real(u.conj().resolve_conj())[:, None]).movedim(2, 0)
             self.ahead[number] += (back.mT @ v).movedim(0, 2)
+            # less than 1 where heading swayed on the way: |u|² weighs such a way as the fit does
             power = u.abs().square()
             self.shared[number] += w.T @ (power[:, None] * w)
             self.counted[number] += torch.stack([power.sum(), mine.sum()])
 
     def solve(self) -> None:
         """Learn positions and offsets from the sums, if either half of the walk foretells the other."""
+        # fewer displacements than cells leave offsets that nothing determines
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
         if min(half.pairs for half in halves) < len(self.offsets):
             return
@@ -175,13 +178,16 @@ class _Evidence(NamedTuple):
     def solve(self, ridge: float) -> tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]:
         """Give β and f."""
         # cells that the walk never came by leave S singular
+        # relative to the mean square of a feature, as sums grow with the walk
         prior = ridge * self.spread.diagonal().mean() * torch.eye(len(self.spread), dtype=torch.double)
+        # S is real: two real right-hand sides cost half of a complex system
         parts = torch.view_as_real(self.ahead.mH.resolve_conj())
         solved = torch.linalg.solve(self.spread + prior, parts.flatten(1)).reshape(parts.shape)
         placing = torch.view_as_complex(solved.contiguous())
         turns = torch.ones(len(self.ahead), dtype=torch.cdouble)
         agreement = self.ahead @ placing
         for _ in range(100):  # nothing changes any more after about fifty
+            # sgn(0) is 0: a cell without any displacement keeps out of it instead of turning NaN
             turns = torch.sgn(agreement @ turns)
         return placing @ turns, turns
 
@@ -189,6 +195,7 @@ class _Evidence(NamedTuple):
         self, positions: Complex[Tensor, "features"], turns: Complex[Tensor, "cells"]
     ) -> float:
         """Share of Σ |u f|² that is left when Σ |v·β − u f|² is taken away, for β and f learnt elsewhere."""
+        # the square multiplied out, so that sums suffice and no view need be kept; real but for rounding
         moved = (positions.conj() @ self.spread.to(torch.cdouble) @ positions).real
         looked = (turns.conj() @ self.shared.to(torch.cdouble) @ turns).real
         both = (turns.conj() @ self.ahead @ positions).real
