@@ -100,7 +100,7 @@ class Retina(nn.Module):
         rows = self.average @ views.float().flatten(2)
         colours = rows.unflatten(2, (-1, 3)).transpose(2, 3).flatten(1, 2)
         strip = colours @ self.centre_surround
-        # over rows and colours alike: one gain per column, so that a view keeps its colours
+        # over rows and colours alike: one gain per column, so that a view keeps its colours;
         # pooled before the root: squares add up across columns, their roots do not
         contrast = (strip.square().mean(dim=1, keepdim=True) @ self.pooling).sqrt()
         # never 0: even a view of one colour is divided by `faintest`
