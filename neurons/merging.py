@@ -1,7 +1,5 @@
 """Merging: what maps grown from the same charts have learnt apart, added up."""
 
-from __future__ import annotations
-
 from copy import deepcopy
 
 import torch

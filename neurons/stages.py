@@ -1,7 +1,5 @@
 """The stages of learning, critical periods one after the other: what each teaches, how long, from what."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from contextlib import suppress
 from dataclasses import dataclass
@@ -132,14 +130,6 @@ class OlfactionStage(Stage):
 
     def finish(self, circuit: Circuit) -> str | None:
         """Synchronise the charts; while they do not agree, add some and let all of them learn again."""
-        self._orient(circuit)
-        if circuit.atlas_diagnosis() and len(circuit.charts) < circuit.most_charts:
-            circuit.add_charts()
-            return ChartStage.name
-        return None
-
-    @staticmethod
-    def _orient(circuit: Circuit) -> None:
         atlas = Atlas.of(circuit.charts.centres)
         intercepts, jacobians = circuit.olfaction.solve()
         axes = heading_axes(circuit.charts.tangents, jacobians, atlas)
@@ -148,6 +138,10 @@ class OlfactionStage(Stage):
             compass = synchronise(circuit.charts.centres, axes, atlas)
             circuit.agreement = torch.tensor([compass.sign_agreement, compass.eigenvalue])
         circuit.readout.solve(atlas, compass, intercepts, jacobians)
+        if circuit.atlas_diagnosis() and len(circuit.charts) < circuit.most_charts:
+            circuit.add_charts()
+            return ChartStage.name
+        return None
 
 
 @dataclass(frozen=True)
@@ -170,13 +164,7 @@ class MetricMapStage(Stage):
 
     name = "metric_map"
     in_order = True
-    sums = (
-        "metric_map.spread",
-        "metric_map.ahead",
-        "metric_map.shared",
-        "metric_map.counted",
-        "metric_map.seen",
-    )
+    sums = tuple(f"metric_map.{name}" for name in ("spread", "ahead", "shared", "counted", "seen"))
     recent = ("metric_map.recent",)
 
     def learn(self, circuit: Circuit, batch: Batch) -> None:
@@ -196,11 +184,8 @@ class AfferentStage(Stage):
     """The cells' afferents from sight, instructed by recalled smell and corrected heading."""
 
     name = "afferents"
-    sums = (
-        "place.afferents.association",
-        "place.afferents.activity",
-        "heading.afferents.association",
-        "heading.afferents.activity",
+    sums = tuple(
+        f"{cells}.afferents.{name}" for cells in ("place", "heading") for name in ("association", "activity")
     )
 
     def learn(self, circuit: Circuit, batch: Batch) -> None:

@@ -1,7 +1,5 @@
 """The atlas: which charts overlap, how far apart they lie, and the displacement across each overlap."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import torch
@@ -28,7 +26,7 @@ class Atlas:
     spacing: Float[Tensor, "charts"]
 
     @classmethod
-    def of(cls, centres: Float[Tensor, "charts components"], *, overlaps: int = 8, pool: int = 12) -> Atlas:
+    def of(cls, centres: Float[Tensor, "charts components"], *, overlaps: int = 8, pool: int = 12) -> "Atlas":
         """Find the neighbourhoods of chart centres.
 
         Parameters
@@ -46,8 +44,10 @@ class Atlas:
         # exact: |a|² + |b|² − 2 a·b would lose the digits of neighbours far from the origin
         distance = torch.cdist(centres, centres, compute_mode="donot_use_mm_for_euclid_dist")
         nearest = distance.topk(min(max(pool, overlaps + 1), count), dim=1, largest=False)
+        # exact distances put the chart itself first, at 0
         overlap = nearest.indices[:, 1 : overlaps + 1]
         here = torch.arange(count)[:, None].expand_as(overlap)
+        # smaller index first: k → j and j → k become equal, and `unique` keeps one
         pairs = torch.stack([torch.minimum(here, overlap), torch.maximum(here, overlap)], dim=2)
         return cls(
             pool=nearest.indices[:, :pool],

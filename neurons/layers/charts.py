@@ -40,26 +40,22 @@ class Charts(nn.Module):
     Kambhatla & Leen (1997), Dimension reduction by local principal component analysis. Neural Computation 9.
     """
 
-    centres: Tensor
-    tangents: Tensor
-    responsibility: Tensor
-    variances: Tensor
-    initialised: Tensor
-
     def __init__(self, charts: int, components: int, *, generator: torch.Generator) -> None:
         super().__init__()
+        # orthonormal from the start, as Sanger's rule expects of rows that are to part
         draws = torch.randn(charts, components, DIMENSIONS, generator=generator)
-        self.register_buffer("centres", torch.zeros(charts, components))
-        self.register_buffer("tangents", torch.linalg.qr(draws).Q.mT.contiguous())
-        self.register_buffer("responsibility", torch.zeros(charts))
-        self.register_buffer("variances", torch.zeros(charts, DIMENSIONS))
-        self.register_buffer("initialised", torch.zeros((), dtype=torch.int64))
+        self.centres: Tensor = nn.Buffer(torch.zeros(charts, components))
+        self.tangents: Tensor = nn.Buffer(torch.linalg.qr(draws).Q.mT.contiguous())
+        self.responsibility: Tensor = nn.Buffer(torch.zeros(charts))
+        self.variances: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS))
+        self.initialised: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
 
     def __len__(self) -> int:
         return len(self.centres)
 
     def excite(self, codes: Float[Tensor, "views components"], winners: int) -> NearestCharts:
         """Find the nearest centres of each code, nearest first."""
+        # |z|² is the same for all centres: without it one product ranks them
         squared = torch.addmm(self.centres.square().sum(dim=1), codes, self.centres.T, alpha=-2.0)
         nearest = squared.topk(min(winners, len(self)), dim=1, largest=False)
         # subtracting codes directly keeps the digits that |c|² − 2 z·c loses near a centre
@@ -100,13 +96,16 @@ class Charts(nn.Module):
 
     def _compete(self, codes: Float[Tensor, "views components"], *, winners: int, window: float) -> None:
         chart = self.excite(codes, winners).chart
+        # the last of m winners learns about e⁻² as much as the first, whatever m is
         h = torch.exp(-2.0 * torch.arange(chart.shape[1]) / chart.shape[1])
         flat, weight = chart.flatten(), h.repeat(len(codes))
         # forgotten by the batch, and never below zero where a batch is longer than the window
         self.responsibility *= max(0.0, 1 - len(codes) / window)
         self.responsibility.index_add_(0, flat, weight)
         # a chart that has not won yet has no weight to divide by, and its numerators are zero
+        # with this batch in the sum a first win has the rate 1: the mean of what was won
         rate = 1 / self.responsibility.clamp(min=1e-6)
+        # from centres before they move: all that follows is of one state
         residual = (codes[:, None] - self.centres[chart]).flatten(0, 1)
         y = torch.einsum("ndc,nc->nd", self.tangents[flat], residual)
         # index_add_ on one thread adds in the order of views, so that the same seed gives the same bits
@@ -120,6 +119,7 @@ class Charts(nn.Module):
         fed = torch.zeros_like(self.responsibility).index_add_(0, flat, weight)
         self.centres += rate[:, None] * shift
         drive = self.variances[:, :, None] * self.tangents
+        # sums over what was won, not means yet: one multiplication by `rate` below makes means of all terms
         decay = torch.tril(cross, diagonal=-1) @ self.tangents
         drive += rate[:, None, None] * (hebb - decay - fed[:, None, None] * drive)
         self.variances = drive.norm(dim=2)
@@ -129,4 +129,5 @@ class Charts(nn.Module):
 
     def freeze(self) -> None:
         """Make the tangents of each chart orthonormal."""
+        # QR keeps the span of the first d tangents for every d: they stay in the order of their variances
         self.tangents = torch.linalg.qr(self.tangents.mT).Q.mT.contiguous()

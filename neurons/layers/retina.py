@@ -21,6 +21,7 @@ def _area_average(pixels: int, receptors: int) -> Float[Tensor, "receptors pixel
     """Matrix that averages pixels over equal stretches of the image; each row sums to one."""
     edge = torch.linspace(0, pixels, receptors + 1, dtype=torch.float64)
     pixel = torch.arange(pixels, dtype=torch.float64)
+    # stretches need not be whole pixels: a pixel counts by the part of it that lies inside
     overlap = torch.minimum(edge[1:, None], pixel + 1) - torch.maximum(edge[:-1, None], pixel)
     return (overlap.clamp(min=0) * receptors / pixels).float()
 
@@ -58,11 +59,6 @@ class Retina(nn.Module):
     Heeger (1992), Normalization of cell responses in cat striate cortex. Visual Neuroscience 9.
     """
 
-    average: Tensor
-    centre_surround: Tensor
-    pooling: Tensor
-    blur: Tensor
-
     def __init__(
         self,
         height: int,
@@ -87,13 +83,12 @@ class Retina(nn.Module):
         # both blurs in one matrix, as their difference is linear: one product per view
         blur = _circular_gaussian(columns, acuity)
         differences = blur - _circular_gaussian(columns, surround)
-        for name, matrix in {
-            "average": _area_average(height, rows),
-            "centre_surround": _area_average(width, columns).T @ differences,
-            "pooling": _circular_gaussian(columns, pool),
-            "blur": blur,
-        }.items():
-            self.register_buffer(name, matrix, persistent=False)
+        # not saved with a map: they follow from the size of its views
+        self.average: Tensor = nn.Buffer(_area_average(height, rows), persistent=False)
+        centre_surround = _area_average(width, columns).T @ differences
+        self.centre_surround: Tensor = nn.Buffer(centre_surround, persistent=False)
+        self.pooling: Tensor = nn.Buffer(_circular_gaussian(columns, pool), persistent=False)
+        self.blur: Tensor = nn.Buffer(blur, persistent=False)
 
     def forward(self, views: UInt8[Tensor, "views height width 3"]) -> Float[Tensor, "views features"]:
         """Turn views into normalised strips, rows × colours × columns."""
@@ -101,11 +96,14 @@ class Retina(nn.Module):
         return torch.cat([self._strips(batch) for batch in views.split(16)])
 
     def _strips(self, views: UInt8[Tensor, "batch height width 3"]) -> Float[Tensor, "batch features"]:
+        # rows first: 60 become 15 before the product along azimuth, the larger one
         rows = self.average @ views.float().flatten(2)
         colours = rows.unflatten(2, (-1, 3)).transpose(2, 3).flatten(1, 2)
         strip = colours @ self.centre_surround
-        # over rows and colours alike: one gain per column, so that a view keeps its colours
+        # over rows and colours alike: one gain per column, so that a view keeps its colours;
+        # pooled before the root: squares add up across columns, their roots do not
         contrast = (strip.square().mean(dim=1, keepdim=True) @ self.pooling).sqrt()
+        # never 0: even a view of one colour is divided by `faintest`
         gain = contrast + self.floor * contrast.mean(dim=2, keepdim=True) + self.faintest
         blurred: Tensor = strip / gain @ self.blur
         return blurred.flatten(1)
