@@ -84,7 +84,7 @@ def _write(path: Path, images: np.ndarray) -> None:
     index, sizes = np.full((SHARD, 2), 2**64 - 1, "<u8"), np.array([len(frame) for frame in frames], "<u8")
     index[: len(sizes)] = np.stack([np.cumsum(sizes) - sizes, sizes], axis=1)
     with atomic_write(path) as fresh, fresh.open("wb") as stream:
-        stream.writelines([*frames, index, _checksum(index.tobytes())])
+        stream.writelines([*frames, index.tobytes(), _checksum(index.tobytes())])
 
 
 def _checksum(content: bytes) -> bytes:
