@@ -120,7 +120,7 @@ def plain_ticks(axis: Axis, ticks: Locator | Sequence[float]) -> None:
 
 
 def draw_headings(
-    axes: Axes, headings: Float[np.ndarray, " angles"], values: ArrayLike, *, size: float, margin: float = 5
+    axes: Axes, headings: Float[np.ndarray, " angles"], values: ArrayLike, *, size: float, margin: float = 5.0
 ) -> None:
     """Draw values over headings (rad) as dots of their cyclic colours, along an axis in degrees."""
     axes.scatter(np.rad2deg(headings), values, s=size, c=direction_colours(headings), linewidths=0)

@@ -52,7 +52,7 @@ def plot_afferents(
     colour_bar(above[-1], drawn, "weight (Hz)")
     for axes, cell in zip(below, directions, strict=False):
         tidy(axes, x="heading of the chart's view (°)", y="weight (Hz)", title=f"head-direction cell {cell}")
-        draw_headings(axes, preferred[:, 2], heading[:, cell], size=4, margin=0)
+        draw_headings(axes, preferred[:, 2], heading[:, cell], size=4.0, margin=0.0)
         axes.set_ylim(0, 1.05 * max(float(heading.max()), 1e-9))
     heading_bar(below[-1])
     return figure

@@ -53,7 +53,7 @@ def _draw_map(axes: Axes, maps: RateMaps, cell: int, *, first: bool) -> None:
     peak = float(np.nanmax(maps[cell]))
     x, y = ("x (m)", "y (m)") if first else ("", "")
     tidy(axes, x=x, y=y, title=f"cell {cell}: {peak:.2g} Hz", size=TINY)
-    draw_bins(axes, maps.edges, maps[cell] / peak, "viridis", low=0, high=1)
+    draw_bins(axes, maps.edges, maps[cell] / peak, "viridis", low=0.0, high=1.0)
     if np.ptp(maps.edges.y) > THINNEST * np.ptp(maps.edges.x):
         axes.set_aspect("equal")
     axes.set_facecolor(ABSENT)

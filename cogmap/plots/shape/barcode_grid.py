@@ -65,7 +65,7 @@ def plot_barcode_grid(
 
 def _draw(axes: Axes, result: Betti | None, expected: tuple[int, ...], limit: float) -> str:
     # A long axis has room for fewer.
-    ticks = (1, 1.5, 2, 3, 5, 10, 30, 100) if limit < 15 else (1, 2, 5, 10, 30, 100)
+    ticks = (1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0) if limit < 15 else (1.0, 2.0, 5.0, 10.0, 30.0, 100.0)
     right = result is not None and result.numbers[: len(expected)] == expected
     tidy(axes, title=" ")
     axes.title.set_color(INK if right else BAD)

@@ -79,8 +79,8 @@ def draw_bars(axes: Axes, result: Betti, dimension: int, count: int, colour: str
 
 
 def _draw_bars(axes: Axes, result: Betti, dimension: int, limit: float, most: int) -> None:
-    fine_ticks = (1, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2, 2.3)
-    ticks = (1, 1.2, 1.5, 2, 3, 5, 10, 20, 50, 100)
+    fine_ticks = (1.0, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2.0, 2.3)
+    ticks = (1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0)
     threshold, holes = result.thresholds[dimension], "loops" if dimension == 1 else "voids"
     tidy(axes, x=f"π of H{dimension} ({holes}), death / birth, no unit", y="bar, largest first")
     axes.set(xscale="log", xlim=(1, limit))

@@ -35,6 +35,6 @@ def plot_confusion(rooms: Mapping[str, pd.DataFrame]) -> Figure:
         share = means_by_bin(edges.bin_of(positions), ny * nx, views[["confused"]].to_numpy(float))
         rate = 100 * views["confused"].mean()
         tidy_room(axes, title=f"{name.replace('_', ' ')}: {rate:.1f} % of {len(views):,} views confused")
-        drawn = draw_bins(axes, edges, share.reshape(ny, nx), "magma_r", low=0, high=1)
+        drawn = draw_bins(axes, edges, share.reshape(ny, nx), "magma_r", low=0.0, high=1.0)
         colour_bar(axes, drawn, "share confused")
     return figure

@@ -59,7 +59,7 @@ def plot_compass(
     draw_agreement(left, headings_true, headings_estimated, direction_colours(headings_estimated))
     left.set(xticks=QUARTERS, yticks=QUARTERS)
     tidy(middle, x="size of the heading error (°)", y="views", title=f"{len(error):,} views")
-    draw_sizes(middle, np.rad2deg(np.abs(np.angle(error))), "°", 3)
+    draw_sizes(middle, np.rad2deg(np.abs(np.angle(error))), "°", 3.0)
     if positions is not None:
         _draw_room(right[0], error, positions)
     return figure

@@ -42,7 +42,7 @@ def plot_metric_map(mapped: Float[np.ndarray, "views 2"], true: Float[np.ndarray
     explained = 1 - np.square(away).sum() / spread if spread else np.nan
     title = f"{len(true):,} views, R² {explained:.4f}"
     tidy(right, x="distance from the true position (cm)", y="views", title=title)
-    draw_sizes(right, 100 * np.linalg.norm(away, axis=1), " cm", 2)
+    draw_sizes(right, 100 * np.linalg.norm(away, axis=1), " cm", 2.0)
     return figure
 
 

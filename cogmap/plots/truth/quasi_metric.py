@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from cogmap.plots.style import BAD, SOFT, colour_bar, draw_headings, new_panels, plain_ticks, tidy, tidy_room
 
 DISTORTION = "geodesic / motion, over that of all pairs"
-TICKS = [0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 2]
+TICKS = [0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0]
 
 
 def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
@@ -41,7 +41,7 @@ def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
 
 def _draw_headings(axes: Axes, places: pd.DataFrame) -> None:
     tidy(axes, x="heading (°)", y=DISTORTION, title="distortion by heading")
-    draw_headings(axes, places["heading_rad"].to_numpy(), places["distortion"], size=9)
+    draw_headings(axes, places["heading_rad"].to_numpy(), places["distortion"], size=9.0)
     axes.axhline(1, color=SOFT, linewidth=0.6)
     axes.set_yscale("log", base=2)
     plain_ticks(axes.yaxis, TICKS)
