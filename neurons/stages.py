@@ -130,6 +130,14 @@ class OlfactionStage(Stage):
 
     def finish(self, circuit: Circuit) -> str | None:
         """Synchronise the charts; while they do not agree, add some and let all of them learn again."""
+        self._orient(circuit)
+        if circuit.atlas_diagnosis() and len(circuit.charts) < circuit.most_charts:
+            circuit.add_charts()
+            return ChartStage.name
+        return None
+
+    @staticmethod
+    def _orient(circuit: Circuit) -> None:
         atlas = Atlas.of(circuit.charts.centres)
         intercepts, jacobians = circuit.olfaction.solve()
         axes = heading_axes(circuit.charts.tangents, jacobians, atlas)
@@ -138,10 +146,6 @@ class OlfactionStage(Stage):
             compass = synchronise(circuit.charts.centres, axes, atlas)
             circuit.agreement = torch.tensor([compass.sign_agreement, compass.eigenvalue])
         circuit.readout.solve(atlas, compass, intercepts, jacobians)
-        if circuit.atlas_diagnosis() and len(circuit.charts) < circuit.most_charts:
-            circuit.add_charts()
-            return ChartStage.name
-        return None
 
 
 @dataclass(frozen=True)

@@ -30,9 +30,10 @@ def image_codes(views: Any) -> Float32[np.ndarray, "views features"]:
     with one_thread():
         for block in gen_batches(len(codes), 256):
             for code, view in zip(codes[block], np.asarray(views[block]), strict=True):
-                pixels = view.astype(np.float32)
                 # Averaged to twice the size first: a blur of one pixel of the code costs little there.
-                fine = cv2.resize(pixels, (2 * WIDTH, 2 * HEIGHT), interpolation=cv2.INTER_AREA)
+                fine = cv2.resize(
+                    view.astype(np.float32), (2 * WIDTH, 2 * HEIGHT), interpolation=cv2.INTER_AREA
+                )
                 blurred = cv2.GaussianBlur(fine, (0, 0), 1.0)
                 code[:] = cv2.resize(blurred, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA).ravel()
     return codes

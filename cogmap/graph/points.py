@@ -50,8 +50,7 @@ def distinct(X: Checked) -> Distinct:
     """Find which points of a checked cloud repeat others."""
     if not sp.issparse(X):
         return Distinct(*np.unique(X, axis=0, return_index=True, return_inverse=True))
-    spans = pairwise(X.indptr)
-    rows = [X.indices[start:end].tobytes() + X.data[start:end].tobytes() for start, end in spans]
+    rows = [X.indices[a:b].tobytes() + X.data[a:b].tobytes() for a, b in pairwise(X.indptr)]
     # Objects, as fixed-length strings would lose the zero bytes at their ends.
     _, first, same = np.unique(np.array(rows, object), return_index=True, return_inverse=True)
     return Distinct(X[first], first, same)
