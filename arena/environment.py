@@ -11,10 +11,11 @@ import numpy as np
 from jaxtyping import UInt8
 from pydantic import Field
 
-from arena.bodies.disc import Disc, Drive
+from arena.bodies.disc import Disc, Drive, Pose
 from arena.errors import ArenaError
 from arena.exploration import Eye
 from arena.eye.camera import Camera
+from arena.motions.locomotion import random_start
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 from arena.smell.nose import Nose
@@ -131,10 +132,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode, at `options["pose"]` or anywhere in free space."""
         super().reset(seed=seed)
-        start = _start(options or {})
-        if start is None:
-            ((x, y),) = self.arena.sample_free(1, self.body.radius, self.np_random).tolist()
-            start = x, y, self.np_random.uniform(-np.pi, np.pi)
+        start = _start(options or {}) or random_start(self.arena, self.body, self.np_random)
         self._drive = self.body.place(self.arena, start)
         self._sniffer = self.nose.sniffer(len(self.arena.sources), self.np_random)
         self._now[0] = 0.0
@@ -152,8 +150,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
             )
         first, second = command.tolist()
         if self.control == "wheels":
-            left, right = first * self.body.max_speed, second * self.body.max_speed
-            speed, turn = self.body.from_wheels(left, right)
+            speed, turn = self.body.from_wheels(first * self.body.max_speed, second * self.body.max_speed)
         else:
             speed, turn = first * self.body.max_speed, second * self.body.max_turn
         touched = self._drive.step(speed, turn, self.dt)
@@ -190,7 +187,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         return self._sensed, {"pose": pose[0], "touched": touched}
 
 
-def _start(options: Mapping[str, Any]) -> tuple[float, float, float] | None:
+def _start(options: Mapping[str, Any]) -> Pose | None:
     """Read the options of `Explorer.reset`."""
     unknown = options.keys() - {"pose"}
     if unknown:

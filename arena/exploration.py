@@ -1,8 +1,10 @@
 """Explore: a body walks through a room, looks and smells."""
 
 import json
+from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, UInt8
@@ -14,7 +16,7 @@ from arena.motions.base import Motion
 from arena.recordings import storage
 from arena.recordings.origin import origin, unlike
 from arena.recordings.recording import Recording
-from arena.recordings.sharding import Writer, shards
+from arena.recordings.sharding import shards, write_shards
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
 
@@ -26,22 +28,18 @@ class Eye(Protocol):
     @property
     def height(self) -> int:
         """Rows of an image."""
-        ...
 
     @property
     def width(self) -> int:
         """Columns of an image."""
-        ...
 
     def render(
         self, arena: Arena, poses: Float[np.ndarray, "views 3"], *, rng: np.random.Generator
     ) -> UInt8[np.ndarray, "views height width 3"]:
         """Paint the views from poses, with what sensor noise there is from the generator."""
-        ...
 
     def model_dump(self) -> dict[str, Any]:
         """Give the parameters that, with the arena, determine every pixel."""
-        ...
 
 
 def explore(
@@ -83,21 +81,15 @@ def explore(
         views = motion.default_views
     if (views is not None and views < 1) or seed < 0:
         raise ArenaError(f"views is {views} and seed is {seed}; give at least one view and no negative seed")
-    attributes = {
-        "arena": arena.to_toml(),
-        "camera": _parameters(camera),
-        "motion": _parameters(motion),
-        "nose": _parameters(nose),
-        "body": _parameters(body),
-        "views": views,
-        "seed": seed,
-    }
+    parts: dict[str, Any] = {"camera": camera, "motion": motion, "nose": nose, "body": body}
+    described = {name: {"kind": type(part).__name__, **part.model_dump()} for name, part in parts.items()}
+    # As it will read back from JSON, where tuples are lists.
+    described = json.loads(json.dumps(described))
+    attributes = {"arena": arena.to_toml(), **described, "views": views, "seed": seed}
     path = None if out is None else Path(out)
-    begun = storage.load(path) if path is not None and path.exists() else None
-    if path is not None and begun is not None:
-        _check_same(path, begun.attributes, attributes)
-        if not begun.missing:
-            return Recording.open(path)
+    begun = None if path is None else _begun(path, attributes)
+    if path is not None and begun is not None and not begun.missing:
+        return Recording.open(path)
     walk_rng, nose_rng = (np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(2))
     walk = motion.walk(arena, body, views, walk_rng)
     columns: dict[str, Any] = {
@@ -106,27 +98,21 @@ def explore(
         "poses": walk.poses,
     }
     attributes |= {"walk": dict(walk.notes), "origin": origin()}
-    views = len(walk.times)
-    shape = (views, camera.height, camera.width, 3)
-
-    eyes = _Looking(arena, camera, walk.poses, seed, progress)
+    shape = (len(walk.times), camera.height, camera.width, 3)
+    look = partial(_look, arena, camera, walk.poses, seed=seed, progress=progress)
     if path is None:
         images = np.empty(shape, np.uint8)
-        eyes.look(images, shards(views))
+        for rows, seen in look(shards(len(images))):
+            images[rows] = seen
         return Recording(views=images, **columns, attributes=attributes)
+    missing = shards(len(walk.times)) if begun is None else begun.missing
     if begun is None:
-        with storage.new_folder(path) as folder:
-            storage.lay_out(folder, shape, columns, attributes)
-    elif not _equal(begun.columns, columns):
-        there = unlike(begun.attributes.get("origin", {})) or "another version of this program"
-        raise ArenaError(
-            f"{path} was begun by what walks or smells otherwise: {there}; go on with it where it was begun, "
-            "or remove it and start again"
-        )
-    missing = shards(views) if begun is None else begun.missing
+        with storage.new_folder(path, shape, columns, attributes):
+            pass  # It has its name from here on, and the views follow: a kill loses one shard at most.
+    else:
+        _check_columns(path, begun, columns)
     try:
-        with storage.writable_views(path) as writer:
-            eyes.look(writer, missing)
+        write_shards(path / "views", look(missing))
     except OSError as error:
         raise ArenaError(
             f"cannot write {path}: {error.strerror or error}; what is written is kept, and the same command "
@@ -135,40 +121,44 @@ def explore(
     return Recording.open(path)
 
 
-class _Looking(NamedTuple):
-    """A walk to be seen."""
-
-    arena: Arena
-    camera: Eye
-    poses: Float[np.ndarray, "views 3"]
-    seed: int
-    progress: bool
-
-    def look(self, images: np.ndarray | Writer, missing: list[slice]) -> None:
-        """Paint the missing views; each shard has noise of its own, so that it can be made again alone."""
-        with tqdm(total=len(self.poses), unit="view", disable=not self.progress) as bar:
-            bar.update(len(self.poses) - sum(rows.stop - rows.start for rows in missing))
-            for rows in missing:
-                noise = np.random.SeedSequence(self.seed, spawn_key=(2, rows.start))
-                rng = np.random.default_rng(noise)
-                images[rows] = self.camera.render(self.arena, self.poses[rows], rng=rng)
-                bar.update(rows.stop - rows.start)
-
-
-def _parameters(part: Eye | Motion | Disc | Nose) -> dict[str, Any]:
-    """Describe a part as it will read back from JSON, where tuples are lists."""
-    described: dict[str, Any] = json.loads(json.dumps({"kind": type(part).__name__, **part.model_dump()}))
-    return described
-
-
-def _check_same(path: Path, found: dict[str, Any], wanted: dict[str, Any]) -> None:
-    differing = [key for key in wanted if found.get(key) != wanted[key]]
+def _begun(path: Path, wanted: dict[str, Any]) -> storage.Stored | None:
+    """Open what is there already, which must have these attributes."""
+    if not path.exists():
+        return None
+    begun = storage.load(path)
+    differing = [key for key in wanted if begun.attributes.get(key) != wanted[key]]
     if differing:
         raise ArenaError(
             f"{path} holds another recording, of a different {' and '.join(differing)}; "
             "choose another path or remove it first"
         )
+    return begun
 
 
-def _equal(found: dict[str, np.ndarray], wanted: dict[str, np.ndarray]) -> bool:
-    return found.keys() == wanted.keys() and all(np.array_equal(found[name], wanted[name]) for name in wanted)
+def _check_columns(path: Path, begun: storage.Stored, wanted: dict[str, np.ndarray]) -> None:
+    """Refuse to go on with what was seen elsewhere: half of the views would not belong to the poses."""
+    found = begun.columns
+    if found.keys() != wanted.keys() or not all(np.array_equal(found[name], wanted[name]) for name in wanted):
+        there = unlike(begun.attributes.get("origin", {})) or "another version of this program"
+        raise ArenaError(
+            f"{path} was begun by what walks or smells otherwise: {there}; go on with it where it was begun, "
+            "or remove it and start again"
+        )
+
+
+def _look(
+    arena: Arena,
+    camera: Eye,
+    poses: Float[np.ndarray, "views 3"],
+    missing: list[slice],
+    *,
+    seed: int,
+    progress: bool,
+) -> Iterator[tuple[slice, UInt8[np.ndarray, "shard height width 3"]]]:
+    """Paint the missing views; each shard has noise of its own, so that it can be made again alone."""
+    with tqdm(total=len(poses), unit="view", disable=not progress) as bar:
+        bar.update(len(poses) - sum(rows.stop - rows.start for rows in missing))
+        for rows in missing:
+            rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(2, rows.start)))
+            yield rows, camera.render(arena, poses[rows], rng=rng)
+            bar.update(rows.stop - rows.start)

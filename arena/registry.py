@@ -52,11 +52,9 @@ def settings_with(method: str) -> Callable[[ModuleType], Callable[..., Any] | No
     """Pick the settings that a module defines itself and that have a method."""
 
     def pick(module: ModuleType) -> Callable[..., Any] | None:
-        mine = (
-            value for value in vars(module).values() if getattr(value, "__module__", "") == module.__name__
-        )
-        kinds = (value for value in mine if isinstance(value, type) and issubclass(value, Settings))
-        return next((kind for kind in kinds if hasattr(kind, method)), None)
+        kinds = (value for value in vars(module).values() if isinstance(value, type))
+        mine = (kind for kind in kinds if issubclass(kind, Settings) and kind.__module__ == module.__name__)
+        return next((kind for kind in mine if hasattr(kind, method)), None)
 
     return pick
 

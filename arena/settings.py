@@ -1,10 +1,15 @@
 """Settings: the values that describe a body, a nose or a motion, checked once, then never changed."""
 
 from reprlib import Repr
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from arena.errors import ArenaError
+
+Positive = Annotated[float, Field(ge=0.01, le=100)]
+Spread = Annotated[float, Field(ge=0, le=100)]
+Share = Annotated[float, Field(ge=0, le=1)]
 
 _shortened = Repr()
 _shortened.maxstring = 60
@@ -38,14 +43,10 @@ def first_error(error: ValidationError) -> str:
     # A quoted key in TOML may hold a line break.
     keys = [str(key) if str(key).isprintable() else repr(key) for key in place]
     given = first["input"]
-    shown = f" is {_shortened.repr(given)}" if _is_shown(given, first["type"]) else ""
+    # Python refuses to print whole numbers of more than 4300 digits.
+    printable = isinstance(given, str | float) or (isinstance(given, int) and abs(given) < 10**20)
+    shown = f" is {_shortened.repr(given)}" if printable and first["type"] != "extra_forbidden" else ""
     # What pydantic calls by the names of Python.
     in_toml = {"tuple_type": "Input should be a list", "model_type": "Input should be a table"}
     wrong = in_toml.get(first["type"], first["msg"].removeprefix("Value error, "))
     return f"{'.'.join(keys) or 'the arena'}{shown}: {wrong}"
-
-
-def _is_shown(given: object, complaint_type: str) -> bool:
-    # Python refuses to print whole numbers of more than 4300 digits.
-    printable = isinstance(given, str | float) or (isinstance(given, int) and abs(given) < 10**20)
-    return printable and complaint_type != "extra_forbidden"

@@ -13,6 +13,8 @@ from arena.rooms.materials import texture
 
 _SHIFT = 4
 """OpenCV draws at this many binary digits of a pixel."""
+_MARGIN = 0.1
+"""Of floor around everything, m."""
 
 
 class TopView:
@@ -27,14 +29,11 @@ class TopView:
         The room.
     height
         Of the picture, pixels; its width follows from the shape of the room.
-    margin
-        Of floor around everything, m.
     """
 
-    def __init__(self, arena: Arena, height: int = 240, *, margin: float = 0.1) -> None:
+    def __init__(self, arena: Arena, height: int = 240) -> None:
         self._arena = arena
         self._height = height
-        self._margin = margin
 
     def draw(
         self, pose: Pose, radius: float, trail: Float[np.ndarray, "points 2"]
@@ -54,7 +53,7 @@ class TopView:
     def _room(self) -> UInt8[np.ndarray, "height width 3"]:
         """Everything that does not move."""
         x0, _, x1, _ = self._arena.bounds
-        width = round((x1 - x0 + 2 * self._margin) * self._scale)
+        width = round((x1 - x0 + 2 * _MARGIN) * self._scale)
         picture = np.full((self._height, width, 3), (96, 92, 88), np.uint8)
         for part in shapely.get_parts(self._arena.free_space(0.0)):
             rings = [self._pixels(np.array(ring.coords)) for ring in (part.exterior, *part.interiors)]
@@ -73,14 +72,14 @@ class TopView:
     def _scale(self) -> float:
         """Pixels per m."""
         _, y0, _, y1 = self._arena.bounds
-        return self._height / (y1 - y0 + 2 * self._margin)
+        return self._height / (y1 - y0 + 2 * _MARGIN)
 
     def _length(self, metres: float) -> int:
         return int(np.rint(metres * self._scale * 2**_SHIFT))
 
     def _pixels(self, xy: Float[np.ndarray, "points 2"]) -> np.ndarray:
         x0, _, _, y1 = self._arena.bounds
-        pixels = (xy - (x0 - self._margin, y1 + self._margin)) * (self._scale, -self._scale)
+        pixels = (xy - (x0 - _MARGIN, y1 + _MARGIN)) * (self._scale, -self._scale)
         # A pixel's centre is at whole numbers for OpenCV, at halves here.
         out: np.ndarray = np.rint((pixels - 0.5) * 2**_SHIFT).astype(np.int32)
         return out

@@ -40,30 +40,26 @@ __all__ = [
 ]
 
 _HOMES = {
-    "Activity": "map.activity",
-    "BagOfWords": "features",
-    "Betti": "shape",
-    "CogmapError": "errors",
-    "CognitiveMap": "map.cognitive_map",
-    "LandmarkIsomap": "shape",
-    "Localiser": "navigation",
-    "Plan": "sweeps",
-    "UnlikeArithmeticWarning": "errors",
-    "UntrustedMapWarning": "errors",
-    "VisualRoadmap": "navigation",
-    "betti": "shape",
-    "score": "evaluation.scoring",
-    "sweep": "sweeps",
+    "errors": ("CogmapError", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
+    "evaluation.scoring": ("score",),
+    "features": ("BagOfWords",),
+    "map.activity": ("Activity",),
+    "map.cognitive_map": ("CognitiveMap",),
+    "navigation": ("Localiser", "VisualRoadmap"),
+    "shape": ("Betti", "LandmarkIsomap", "betti"),
+    "sweeps": ("Plan", "sweep"),
 }
+"""Modules, with what is imported from them; what has no home is a module."""
 
 
 def __getattr__(name: str) -> object:
     """Import what is asked for: who grows a map waits for no plots, and who plots for no homology."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    if name not in _HOMES:
-        return import_module(f"{__name__}.{name}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    for home, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{home}"), name)
+    return import_module(f"{__name__}.{name}")
 
 
 def __dir__() -> list[str]:

@@ -1,7 +1,5 @@
 """Atomic writes: results and maps that appear under their name only when they are whole."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
@@ -20,19 +18,12 @@ def atomic_write(path: Path, *, overwrite: bool = True) -> AbstractContextManage
     return atomic.atomic_write(path, CogmapError, overwrite=overwrite)
 
 
-def check_absent(path: Path) -> None:
-    """Raise when there is something at a path already."""
-    from arena import atomic  # noqa: PLC0415
-
-    atomic.check_absent(path, CogmapError)
-
-
-def check_replaceable(out: Path) -> None:
-    """Raise unless `out` is free, empty, or the result of an earlier experiment, which may be replaced."""
+def check_replaceable(out: Path, mark: str, wanted: str, beside: tuple[str, ...] = ()) -> None:
+    """Raise unless `out` is free, or a folder that has a file `mark` or holds nothing but `beside`."""
     if not out.exists() and not out.is_symlink():
         return
-    if not out.is_dir() or (any(out.iterdir()) and not (out / METRICS).is_file()):
-        raise CogmapError(f"{out} exists and is not the result of an experiment; choose another folder")
+    if not out.is_dir() or not ((out / mark).is_file() or {item.name for item in out.iterdir()} <= {*beside}):
+        raise CogmapError(f"{out} exists and is not {wanted}")
 
 
 @contextmanager
@@ -44,7 +35,7 @@ def result_folder(out: Path) -> Iterator[Path]:
     CogmapError
         When `out` holds anything but an earlier result, or cannot be written.
     """
-    check_replaceable(out)
+    check_replaceable(out, METRICS, "the result of an experiment; choose another folder")
     with atomic_write(out) as folder:
         folder.mkdir()
         yield folder

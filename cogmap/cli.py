@@ -1,10 +1,7 @@
 """The command line: `cogmap --help`."""
 
-from __future__ import annotations
-
 import sys
 import warnings
-from typing import TextIO
 
 import cyclopts
 
@@ -21,20 +18,12 @@ def main() -> None:
             warnings.showwarning = _say
             app(sys.argv[1:], exit_on_error=False, print_error=False)
     except (ArenaError, NeuronsError, CogmapError, cyclopts.CycloptsError) as error:
-        sentence = " ".join(str(error).split())
-        sys.stderr.write(f"cogmap: {sentence}\n")
+        _say(" ".join(str(error).split()))
         raise SystemExit(2) from None
     except KeyboardInterrupt:
         raise SystemExit(130) from None
 
 
-def _say(  # noqa: PLR0917  the arguments that Python's own has
-    message: Warning | str,
-    category: type[Warning],  # noqa: ARG001
-    filename: str,  # noqa: ARG001
-    lineno: int,  # noqa: ARG001
-    file: TextIO | None = None,  # noqa: ARG001
-    line: str | None = None,  # noqa: ARG001
-) -> None:
-    """Show a warning as the commands show what is wrong: one sentence."""
+def _say(message: Warning | str, *_: object, **__: object) -> None:
+    """Show what is wrong, or a warning with what Python tells of it, as one sentence."""
     sys.stderr.write(f"cogmap: {message}\n")

@@ -1,7 +1,5 @@
 """NWB export: a recording with its cells in the format in which physiologists share such data."""
 
-from __future__ import annotations
-
 import hashlib
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,7 +9,8 @@ import numpy as np
 from jaxtyping import Float
 
 from arena import Recording
-from cogmap.atomic import atomic_write, check_absent
+from arena.atomic import check_absent
+from cogmap.atomic import atomic_write
 from cogmap.cells import poisson_spikes
 from cogmap.errors import CogmapError
 from cogmap.inputs import checked_count
@@ -54,7 +53,7 @@ def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int
         raise CogmapError(
             "writing NWB needs pynwb, which is not installed; run `pip install 'cogmap[nwb]'`"
         ) from None
-    check_absent(out)
+    check_absent(out, CogmapError)
     if recording.poses is None:
         raise CogmapError("the recording has no poses to export; use one that kept them")
     lasting = _durations(recording.times)
@@ -101,12 +100,10 @@ def _lay_out(
     spikes: dict[str, list[Float[np.ndarray, "_"]]],
 ) -> Any:
     """Put everything where the format wants it."""
-    from pynwb import NWBFile, TimeSeries  # noqa: PLC0415
-    from pynwb.behavior import CompassDirection, Position, SpatialSeries  # noqa: PLC0415
-    from pynwb.file import Subject  # noqa: PLC0415
+    import pynwb  # noqa: PLC0415
 
     poses = np.asarray(recording.poses)
-    file = NWBFile(
+    file = pynwb.NWBFile(
         session_description="Simulated: a body explores a room and its cells look. The date is nominal.",
         identifier=hashlib.sha256(b"".join(part.tobytes() for part in (poses, *rates.values()))).hexdigest(),
         # The format asks for a date, and a simulation has none.
@@ -115,7 +112,7 @@ def _lay_out(
         keywords=["place cells", "head-direction cells", "simulation"],
         experimenter="cogmap, simulation",
         institution="none, this is a simulation",
-        subject=Subject(
+        subject=pynwb.file.Subject(
             subject_id="explorer",
             description="A simulated body, no animal: the species is that of the unidentified.",
             species="http://purl.obolibrary.org/obo/NCBITaxon_32644",
@@ -124,7 +121,7 @@ def _lay_out(
         ),
     )
     behavior = file.create_processing_module("behavior", "Where the body truly was.")
-    position = SpatialSeries(
+    position = pynwb.behavior.SpatialSeries(
         name="position",
         description="x and y of the body.",
         data=poses[:, :2],
@@ -132,7 +129,7 @@ def _lay_out(
         unit="meters",
         reference_frame="origin in the middle of the room, x to the right, y up",
     )
-    heading = SpatialSeries(
+    heading = pynwb.behavior.SpatialSeries(
         name="heading",
         description="Where the body faced.",
         data=poses[:, 2],
@@ -140,13 +137,13 @@ def _lay_out(
         unit="radians",
         reference_frame="0 along x, counter-clockwise",
     )
-    behavior.add(Position(spatial_series=position))
-    behavior.add(CompassDirection(spatial_series=heading))
+    behavior.add(pynwb.behavior.Position(spatial_series=position))
+    behavior.add(pynwb.behavior.CompassDirection(spatial_series=heading))
     cells = file.create_processing_module("misc", "How fast the cells of the map fired, view by view.")
     file.add_unit_column("cell_type", "Population of the cell: place or heading.")
     for kind, fired in rates.items():
         cells.add(
-            TimeSeries(
+            pynwb.TimeSeries(
                 name=f"{kind}_rates",
                 description=f"Rates of the {kind} cells, a column for each in the order of its units.",
                 data=fired.astype(np.float32),

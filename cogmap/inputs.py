@@ -1,7 +1,5 @@
 """Checks where arrays and counts enter."""
 
-from __future__ import annotations
-
 import numpy as np
 from jaxtyping import Float32
 from numpy.typing import ArrayLike

@@ -5,10 +5,7 @@ in another order on another one. `cogmap portable COMMAND` runs a command with a
 such processor has. They choose when they are loaded, so it cannot be done later than that.
 """
 
-from __future__ import annotations
-
 import hashlib
-import os
 import platform
 from functools import cache
 
@@ -16,6 +13,7 @@ import llvmlite.binding as llvm
 import numpy as np
 import scipy.linalg
 import torch
+from numpy.typing import ArrayLike
 
 from cogmap.errors import CogmapError
 from cogmap.threads import one_thread
@@ -46,15 +44,13 @@ def portable_environment() -> dict[str, str]:
             "portable arithmetic needs an x86-64 processor with AVX2 and FMA, and this is "
             f"{platform.machine()}, {llvm.get_host_cpu_name()}; run the command without `cogmap portable`"
         )
-    held = {"NPY_DISABLE_CPU_FEATURES": " ".join(_wider_than_avx2())}
+    known = np.show_config(mode="dicts")["SIMD Extensions"]  # of this processor and of others
+    names = [*known.get("found", []), *known.get("not found", [])]
+    wider = [name for name in names if name.startswith(("AVX512", "X86_V4"))]
+    held = {"NPY_DISABLE_CPU_FEATURES": " ".join(wider)}
     if found.get("avx512bw"):  # OpenCV complains of being told so elsewhere
         held["OPENCV_CPU_DISABLE"] = "AVX512-SKX"
     return PINNED | held
-
-
-def is_portable() -> bool:
-    """Whether this process was started with portable arithmetic."""
-    return all(os.environ.get(name) == value for name, value in PINNED.items())
 
 
 @cache
@@ -70,7 +66,7 @@ def arithmetic() -> str:
     with one_thread():
         product = x @ y
         covariance = (product.T @ product).double()
-        results = [
+        results: list[ArrayLike] = [
             product,
             torch.addmm(y[0], product, y[:60].T, alpha=-2.0),
             torch.einsum("dnc,nc->nd", y[:960].view(3, 320, 60), y[:320]),
@@ -79,21 +75,9 @@ def arithmetic() -> str:
             torch.linalg.solve(covariance, y[:60].double()),
             torch.atan2(x.sin(), x.cos()),
             x.exp() + x.square().mean(dim=1, keepdim=True).sqrt(),
-        ]
-        arrays = [
             a @ b,
             np.exp(a),
             np.arctan2(a, a[::-1]),
             scipy.linalg.eigh(covariance.numpy(), eigvals_only=True),
         ]
-    digest = hashlib.sha256()
-    for array in [*(result.numpy() for result in results), *arrays]:
-        digest.update(np.ascontiguousarray(array).tobytes())
-    return digest.hexdigest()[:8]
-
-
-def _wider_than_avx2() -> list[str]:
-    """Name the instruction sets beyond AVX2 that numpy knows of, on this processor or not."""
-    known = np.show_config(mode="dicts")["SIMD Extensions"]
-    names = [*known.get("found", []), *known.get("not found", [])]
-    return [name for name in names if name.startswith(("AVX512", "X86_V4"))]
+    return hashlib.sha256(b"".join(np.asarray(result).tobytes() for result in results)).hexdigest()[:8]

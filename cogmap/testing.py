@@ -1,7 +1,5 @@
 """Assertions for the tests of those who use this package."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The circuit: all layers, and the way of a view through them."""
 
-from __future__ import annotations
-
 import math
 from typing import NamedTuple
 
@@ -55,8 +53,6 @@ class Circuit(nn.Module):
         Least agreement of the heading axes on a direction of turning: one overlap in 400 may be reversed.
     """
 
-    agreement: Tensor
-
     def __init__(
         self,
         features: int,
@@ -82,7 +78,7 @@ class Circuit(nn.Module):
         self.place = PlaceCells(place_cells, charts, odorants)
         self.heading = HeadDirectionCells(heading_cells, charts, generator=generator)
         self.metric_map = MetricMap(place_cells, odorants)
-        self.register_buffer("agreement", torch.full((2,), torch.nan))
+        self.agreement: Tensor = nn.Buffer(torch.full((2,), torch.nan))
 
     def recall(self, strips: Float[Tensor, "views features"]) -> Recalled:
         """Tell heading and smell from sight."""

@@ -1,8 +1,7 @@
 """Merging: what maps grown from the same charts have learnt apart, added up."""
 
-from __future__ import annotations
-
 from copy import deepcopy
+from typing import Any
 
 import torch
 
@@ -53,7 +52,7 @@ def merge(network: Network, other: Network) -> None:
     network.views_seen.fill_(together)
 
 
-def _shared_stage(network: Network) -> Stage:
+def _shared_stage(network: Network) -> Stage[Any]:
     """Give the stage that a network is in, if its work can be shared."""
     stage = network.entered
     if not stage.sums:
@@ -65,7 +64,7 @@ def _shared_stage(network: Network) -> Stage:
     return stage
 
 
-def _check_kin(network: Network, other: Network, stage: Stage) -> None:
+def _check_kin(network: Network, other: Network, stage: Stage[Any]) -> None:
     mine, its = network.state_dict(), other.state_dict()
     if (network.stages, network.epoch) != (other.stages, other.epoch) or any(
         mine[name].shape != its[name].shape for name in mine

@@ -1,13 +1,11 @@
 """The network: a circuit that learns in stages."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 
 import torch
 from jaxtyping import Float
-from torch import Tensor
+from torch import Tensor, nn
 
 from neurons.circuit import Circuit
 from neurons.stages import STAGES, Batch, Stage
@@ -33,9 +31,6 @@ class Network(Circuit):
         In order; one more is one more in the list.
     """
 
-    views_seen: Tensor
-    stage_index: Tensor
-
     def __init__(
         self,
         features: int,
@@ -48,8 +43,8 @@ class Network(Circuit):
         super().__init__(features, odorants, **circuit)
         self.epoch = epoch
         self.stages = tuple(stages)
-        self.register_buffer("views_seen", torch.zeros((), dtype=torch.int64))
-        self.register_buffer("stage_index", torch.zeros((), dtype=torch.int64))
+        self.views_seen: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
+        self.stage_index: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self._make_layers(0)
 
     @property

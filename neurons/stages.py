@@ -1,7 +1,5 @@
 """The stages of learning, critical periods one after the other: what each teaches, how long, from what."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from contextlib import suppress
@@ -18,7 +16,6 @@ from neurons.atlas.synchronisation import synchronise
 from neurons.circuit import Circuit, Recalled
 from neurons.errors import NeuronsError
 
-
 Seen = TypeVar("Seen", Tensor, Recalled)
 """Views as a stage sees them: rows of a tensor, or what the atlas recalls."""
 
@@ -26,7 +23,7 @@ Seen = TypeVar("Seen", Tensor, Recalled)
 def joined(parts: Sequence[Seen]) -> Seen:
     """Put batches of the same kind together."""
     if isinstance(parts[0], Tensor):
-        return torch.cat(parts)
+        return torch.cat(list(parts))
     return Recalled(*(torch.cat(part) for part in zip(*parts, strict=True)))
 
 
@@ -114,7 +111,8 @@ class CodedStage(Stage[Tensor]):
     @staticmethod
     def see(circuit: Circuit, strips: Float[Tensor, "views features"]) -> Tensor:
         """Give the principal components of the strips."""
-        return circuit.code(strips)
+        codes: Tensor = circuit.code(strips)
+        return codes
 
 
 @dataclass(frozen=True)
@@ -226,13 +224,7 @@ class MetricMapStage(RecallStage):
 
     name = "metric_map"
     in_order = True
-    sums = (
-        "metric_map.spread",
-        "metric_map.ahead",
-        "metric_map.shared",
-        "metric_map.counted",
-        "metric_map.seen",
-    )
+    sums = tuple(f"metric_map.{name}" for name in ("spread", "ahead", "shared", "counted", "seen"))
     recent = ("metric_map.recent",)
 
     def learn(self, circuit: Circuit, batch: Batch[Recalled]) -> None:
@@ -251,11 +243,8 @@ class AfferentStage(RecallStage):
     """The cells' afferents from sight, instructed by recalled smell and corrected heading."""
 
     name = "afferents"
-    sums = (
-        "place.afferents.association",
-        "place.afferents.activity",
-        "heading.afferents.association",
-        "heading.afferents.activity",
+    sums = tuple(
+        f"{cells}.afferents.{name}" for cells in ("place", "heading") for name in ("association", "activity")
     )
 
     def learn(self, circuit: Circuit, batch: Batch[Recalled]) -> None:

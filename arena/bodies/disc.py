@@ -45,8 +45,6 @@ class Drive:
 
     def __init__(self, body: "Disc", arena: Arena, pose: Pose) -> None:
         self.body = body
-        self._max_speed, self._max_turn = body.max_speed, body.max_turn
-        self._acceleration, self._turn_acceleration = body.max_acceleration, body.max_turn_acceleration
         self._heading = pose[2]
         self._space = arena.space()
         self._disc = pymunk.Body(mass=1.0, moment=math.inf)
@@ -84,18 +82,12 @@ class Drive:
                 f"cannot step at speed {speed} m/s and turn {turn} rad/s for {dt} s; "
                 "give finite numbers and dt > 0"
             )
-        speed = max(-self._max_speed, min(self._max_speed, speed))
-        turn = max(-self._max_turn, min(self._max_turn, turn))
-        if self._acceleration is None:
-            self.speed = speed
-        else:
-            self.speed, speed = _approach(self.speed, speed, self._acceleration, dt)
-        if self._turn_acceleration is None:
-            self.turn = turn
-        else:
-            self.turn, turn = _approach(self.turn, turn, self._turn_acceleration, dt)
-        disc = self._disc
-        parts = max(1, math.ceil(5 * abs(speed) * dt / self.body.radius))
+        body, disc = self.body, self._disc
+        speed = max(-body.max_speed, min(body.max_speed, speed))
+        turn = max(-body.max_turn, min(body.max_turn, turn))
+        self.speed, speed = _approach(self.speed, speed, body.max_acceleration, dt)
+        self.turn, turn = _approach(self.turn, turn, body.max_turn_acceleration, dt)
+        parts = max(1, math.ceil(5 * abs(speed) * dt / body.radius))
         dt /= parts
         self.contact = None
         for _ in range(parts):
@@ -138,8 +130,10 @@ class Drive:
             self.contact = math.atan2(y - y0, x - x0)
 
 
-def _approach(now: float, goal: float, limit: float, dt: float) -> tuple[float, float]:
+def _approach(now: float, goal: float, limit: float | None, dt: float) -> tuple[float, float]:
     """Change by no more than limit a second towards the goal: give what is reached in dt, and the mean."""
+    if limit is None:
+        return goal, goal
     change = goal - now
     needed = abs(change) / limit
     if needed < dt:

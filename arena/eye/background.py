@@ -23,10 +23,13 @@ def backdrop(
     alike = zenith is None or lens.panoramic
     columns = 1 if alike else lens.width
     aside = np.array([np.hypot(*direction(c + 0.5, lens)) for c in range(columns)])
+    # Without any rise the quotient below is 0 and not 0/0: the level part of a direction is at least 1, in
+    # the middle of a plane and all around a cylinder.
     rise = np.maximum(0.5 * lens.height - np.arange(lens.height) - 0.5, 0.0) / lens.focal
     shade = (rise / np.hypot(aside[:, None], rise))[..., None]
     colours = np.array(ceiling) + shade * (np.subtract(ceiling if zenith is None else zenith, ceiling))
     colours[:, (lens.height + 1) // 2 :] = floor
+    # Rounded up with a block to spare: kernels copy whole blocks, from any row on.
     length = -(-(4 * lens.height + BLOCK) // BLOCK) * BLOCK
     out = np.zeros((len(aside), length // 4, 4), np.uint8)
     out[:, : lens.height, :3] = np.rint(colours)

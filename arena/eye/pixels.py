@@ -29,7 +29,8 @@ def finish(
     for n in range(in_blocks(4 * (visible[1] - visible[0]))):
         k = np.uint64(4 * visible[0]) + np.uint64(n)
         quad[at, k] = backdrop[source, k]
-    # By way of int32, the only whole numbers that SIMD turns float32 into.
+    # No clip: the weights on a row add up to one, so that a sum lies between 0.5 and 255.5 but for rounding
+    # errors far below a half. By way of int32, the only whole numbers that SIMD turns float32 into.
     for n in range(in_blocks(4 * (rows[1] - rows[0]))):
         k = np.uint64(4 * rows[0]) + np.uint64(n)
         quad[at, k] = np.uint8(np.int32(column[k]))
@@ -42,6 +43,7 @@ def finish(
 @typing.no_type_check
 def emit(quad: np.ndarray, c: int, count: int, visible: tuple, out: np.ndarray) -> None:
     """Copy up to four columns into the image."""
+    # Rows outside, so that what is written lies together: the four columns that are read stay in the cache.
     for r in range(visible[0], visible[1]):
         for q in range(count):
             for k in range(3):
@@ -52,6 +54,7 @@ def emit(quad: np.ndarray, c: int, count: int, visible: tuple, out: np.ndarray) 
 @typing.no_type_check
 def emit_words(quad: np.ndarray, c: int, visible: tuple, out: np.ndarray) -> None:
     """Copy four columns into the image, three words a row."""
+    # All of uint32: numba makes 64 bits of a sum with one of Python's numbers, half as many at a time.
     at = np.uint32(c // 4 * 3)
     one, two = np.uint32(1), np.uint32(2)
     b, g, d = np.uint32(8), np.uint32(16), np.uint32(24)

@@ -23,20 +23,9 @@ FLOOR, CEILING = -1, -2
 
 FACE = np.dtype(
     [
-        ("x0", "f8"),
-        ("y0", "f8"),
-        ("x1", "f8"),
-        ("y1", "f8"),
-        ("height", "f8"),
-        ("offset", "f8"),
-        ("closed", "?"),
-        ("solid", "i4"),
-        ("start", "i8"),
-        ("left_light", "f8"),
-        ("right_light", "f8"),
-        ("red", "f8"),
-        ("green", "f8"),
-        ("blue", "f8"),
+        *((name, "f8") for name in ("x0", "y0", "x1", "y1", "height", "offset")),
+        *(("closed", "?"), ("solid", "i4"), ("start", "i8")),
+        *((name, "f8") for name in ("left_light", "right_light", "red", "green", "blue")),
     ],
     align=True,
 )
@@ -93,7 +82,8 @@ def _cover_ahead(a: tuple, b: tuple, lens: Lens) -> tuple[float, float, float]:
     """First and last image coordinate of a face that is not all behind the eye."""
     far, near = (a, b) if a[0] > b[0] else (b, a)
     x, y = near
-    # What lies behind the eye would be projected to the other side, upside down.
+    # What lies behind the eye would be projected to the other side, upside down. `_project` leaves out what
+    # is all nearer than this, so that no quotient is by zero.
     if x < NEAREST:
         x, y = NEAREST, y + (far[1] - y) * (NEAREST - x) / (far[0] - x)
     # Cut to the image: the end of a face that is seen aslant may be projected any number of widths away.
@@ -109,6 +99,7 @@ def _project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     for f in range(len(faces)):
         face, sight = faces[f], sights[f]
+        # Shifted before it is turned: a difference of close numbers is exact, that of turned ones is not.
         dx, dy = face.x0 - pose[0], face.y0 - pose[1]
         a = cosine * dx + sine * dy, cosine * dy - sine * dx
         dx, dy = face.x1 - pose[0], face.y1 - pose[1]
@@ -120,6 +111,7 @@ def _project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray
         hidden = cross > 0.0 and face.closed and face.height >= lens.eye  # the back of a tall solid
         if hidden or (not lens.panoramic and a[0] < NEAREST and b[0] < NEAREST):
             continue
+        # Rooms are within a kilometre, whose square cannot overflow: hypot's scaling would only cost time.
         length = np.sqrt((b[0] - a[0]) ** 2 + (b[1] - a[1]) ** 2)
         along, across = (b[0] - a[0]) / length, (b[1] - a[1]) / length
         # Edge-on, 1 / depth would be 0 / 0; from 1e-12 m aside it is the same image.
@@ -144,10 +136,12 @@ def project(pose: np.ndarray, faces: np.ndarray, lens: Lens, sights: np.ndarray,
     listed[first[c]:first[c + 1]].
     """
     _project(pose, faces, lens, sights, span)
-    # Count, sum up, fill: one array for all columns, in which those of a column lie together.
+    # Count, sum up, fill: one array for all columns, in which those of a column lie together. int32 takes
+    # half the memory, and 8192 columns, the most there are, can still list 100,000 faces twice.
     first = np.zeros(lens.width + 1, np.int32)
     for row in range(len(span)):
         if span[row, 1] > span[row, 0]:
+            # A turn times the focal length may be rounded to beyond the width, where there is no column.
             for c in range(int(span[row, 0]), min(int(np.ceil(span[row, 1])), lens.width)):
                 first[c + 1] += 1
     for c in range(lens.width):
@@ -210,6 +204,7 @@ def touch(
         row, one = listed[k], touches[k]
         one.face = row if row < len(sights) else row - len(sights)
         face, sight = faces[one.face], sights[one.face]
+        # Cut to exactly 0 and 1 where the face goes on beside the column: `split` compares without tolerance.
         one.begin, one.end = max(span[row, 0] - c, 0.0), min(span[row, 1] - c, 1.0)
         one.first = sight.ahead * a0 + sight.left * l0
         one.last = sight.ahead * a1 + sight.left * l1
@@ -224,6 +219,7 @@ def _hidden(one: np.record, occluder: np.record, faces: np.ndarray, lens: Lens) 
     # A height is seen at focal times height over depth from the horizon: no division is needed to compare.
     middle = 0.5 * (one.begin + one.end)
     near, before = nearness(one, middle), nearness(occluder, middle)
+    # Strictly nearer: of two faces at the same place neither may hide the other, whichever is met first.
     rise, skyline = faces[one.face].height - lens.eye, faces[occluder.face].height - lens.eye
     return near < before and near * rise <= before * skyline
 
@@ -255,6 +251,7 @@ def split(within: tuple, faces: np.ndarray, lens: Lens, touches: np.ndarray, edg
             i = parts
             while edges[i - 1] > x:
                 i -= 1
+            # Strictly between, so that an edge of two faces is one: a part of no width would cost as much.
             if edges[i - 1] < x < edges[i]:
                 for j in range(parts, i - 1, -1):
                     edges[j + 1] = edges[j]
@@ -277,6 +274,7 @@ def meet(
     met = 0
     for k in range(within[0], within[1]):
         one = touches[k]
+        # Half open: a ray through the edge that two faces share meets one of them, not both and not none.
         if one.begin <= x < one.end:
             near = nearness(one, x)
             # Where two solids touch, the far face of one is met before the near face of the other, whatever
@@ -295,51 +293,56 @@ def meet(
 
 @kernel()
 @typing.no_type_check
-def _middle(
-    c: int,
-    columns: tuple,
-    faces: np.ndarray,
-    lens: Lens,
-    sights: np.ndarray,
-    span: np.ndarray,
-    touches: np.ndarray,
-    hits: np.ndarray,
-) -> int:
-    """Find what the ray through the middle of column c meets, exactly."""
-    first, listed = columns
-    within = first[c], first[c + 1]
-    # Both sides of the column are its middle: interpolating between sides would be off by what lies between.
-    ray = direction(c + 0.5, lens)
-    touch(c, within, listed, (ray, ray), faces, sights, span, touches)
-    return meet(0.5, within, faces, sights, touches, hits)
+def _middles(pose: np.ndarray, faces: np.ndarray, lens: Lens) -> tuple:
+    """Find what the rays through the middles of the columns meet, exactly.
+
+    Column c meets the touching faces of hits[first[c]:last[c]], from near to far.
+    """
+    sights, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
+    first, listed = project(pose, faces, lens, sights, span)
+    touches, hits, last = np.empty(len(listed), COLUMN_SPAN), np.empty(len(listed), RAY_HIT), first[1:].copy()
+    for c in range(lens.width):
+        within = first[c], first[c + 1]
+        # Both sides of the column are its middle: interpolating between sides would be off by what lies
+        # between, as the cosine of an angle is not linear.
+        ray = direction(c + 0.5, lens)
+        touch(c, within, listed, (ray, ray), faces, sights, span, touches)
+        last[c] = first[c] + meet(0.5, within, faces, sights, touches, hits[first[c] :])
+    return sights, touches, hits, first, last
 
 
 @kernel()
 @typing.no_type_check
-def _measure(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
-    """Measure the distances from one pose."""
-    sights, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
-    columns = project(pose, faces, lens, sights, span)
-    touches, hits = np.empty(len(columns[1]), COLUMN_SPAN), np.empty(len(span), RAY_HIT)
-    for c in range(lens.width):
-        ahead, left = direction(c + 0.5, lens)
-        met = _middle(c, columns, faces, lens, sights, span, touches, hits)
-        # Depth along the axis times the length of the ray is the distance.
-        out[c] = np.hypot(ahead, left) / hits[0].near if met > 0 else np.inf
+def unsound(poses: Poses) -> int:
+    """Find the first pose that is not finite; −1 when all are."""
+    for i in range(len(poses)):
+        # Spelt out, since `isfinite` of a row would allocate an array for each pose.
+        if not (np.isfinite(poses[i, 0]) and np.isfinite(poses[i, 1]) and np.isfinite(poses[i, 2])):
+            return i
+    return -1
+
+
+@kernel(parallel=True)
+@typing.no_type_check
+def measure(poses: Poses, faces: Faces, lens: Lens, out: Float[np.ndarray, "views width"]) -> None:
+    """Write the distance (m) along each column's middle ray into `out`; infinity where nothing is met."""
+    for i in prange(len(poses)):
+        _, _, hits, first, last = _middles(poses[i], faces, lens)
+        for c in range(lens.width):
+            ahead, left = direction(c + 0.5, lens)
+            # Depth along the axis times the length of the ray is the distance.
+            out[i, c] = np.hypot(ahead, left) / hits[first[c]].near if last[c] > first[c] else np.inf
 
 
 @kernel()
 @typing.no_type_check
 def _name(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> None:
     """Name the surface at the middle of every pixel of one view."""
-    sights, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
-    columns = project(pose, faces, lens, sights, span)
-    touches, hits = np.empty(len(columns[1]), COLUMN_SPAN), np.empty(len(span), RAY_HIT)
+    sights, touches, hits, first, last = _middles(pose, faces, lens)
     horizon = 0.5 * lens.height
     for c in range(lens.width):
-        met = _middle(c, columns, faces, lens, sights, span, touches, hits)
         row, ground, beneath = lens.height - 1, 0.0, FLOOR
-        for i in range(met):
+        for i in range(first[c], last[c]):
             f, scale = touches[hits[i].touch].face, lens.focal * hits[i].near
             # A row is where its middle is; the gaze climbs as in `arena.eye.render`.
             while row >= 0 and row + 0.5 >= horizon + scale * (lens.eye - ground):
@@ -356,24 +359,6 @@ def _name(pose: np.ndarray, faces: np.ndarray, lens: Lens, out: np.ndarray) -> N
         # Past the last face: ground up to the horizon, as a room need not be closed.
         for r in range(row + 1):
             out[r, c] = CEILING if r + 0.5 < horizon else beneath
-
-
-@kernel()
-@typing.no_type_check
-def unsound(poses: Poses) -> int:
-    """Find the first pose that is not finite; −1 when all are."""
-    for i in range(len(poses)):
-        if not (np.isfinite(poses[i, 0]) and np.isfinite(poses[i, 1]) and np.isfinite(poses[i, 2])):
-            return i
-    return -1
-
-
-@kernel(parallel=True)
-@typing.no_type_check
-def measure(poses: Poses, faces: Faces, lens: Lens, out: Float[np.ndarray, "views width"]) -> None:
-    """Write the distance (m) along each column's middle ray into `out`; infinity where nothing is met."""
-    for i in prange(len(poses)):
-        _measure(poses[i], faces, lens, out[i])
 
 
 @kernel(parallel=True)

@@ -43,32 +43,11 @@ import numpy as np
 from jaxtyping import Float, UInt8, UInt32
 from numba import prange
 
-from arena.eye.pixels import emit, emit_words, fill, finish
-from arena.eye.raycast import (
-    COLUMN_SPAN,
-    PROJECTED_FACE,
-    RAY_HIT,
-    Faces,
-    Lens,
-    Poses,
-    along,
-    meet,
-    nearness,
-    project,
-    split,
-    touch,
-)
+from arena.eye import pixels, raycast
+from arena.eye import texture_sampling as sampling
+from arena.eye.raycast import Faces, Lens, Poses, along, nearness
 from arena.eye.scene import Scene
-from arena.eye.texture_sampling import (
-    BLOCK,
-    Ground,
-    fade_in,
-    in_blocks,
-    paint_backdrop,
-    paint_ground,
-    paint_wall,
-    unroll,
-)
+from arena.eye.texture_sampling import BLOCK, Ground, in_blocks
 from arena.kernels import kernel
 from arena.rooms.materials import LEVELS, TEXEL
 
@@ -137,15 +116,16 @@ def _paint_face(
     # The coarsest level is left for the fade: it needs one coarser than that found here.
     while step > 2.0 and level < LEVELS[1] - 2:
         step, v, level = 0.5 * step, 0.5 * v, level + 1
-    fade = fade_in(step)
+    fade = sampling.fade_in(step)
+    # A layer of no weight would change nothing and cost as much as the other: most walls need one only.
     for layer in range(2 if fade > 0.0 else 1):
         share = (part[1] - part[0]) * (fade if layer == 1 else 1.0 - fade)
         if layer == 1:
             step, v, level = 0.5 * step, 0.5 * v, level + 1
         # One texel below and two above what is seen: a row is blended from three.
         up = max(int(v - bottom * step) - 1, 0), int(v - top * step) + 3
-        unroll(stretch, up, level, gain, face.start, scene.texels, scene.level_starts, brush.strip)
-        paint_wall(rows, share, (v - up[0], step), brush.strip, brush.texel, brush.mix, brush.column)
+        sampling.unroll(stretch, up, level, gain, face.start, scene.texels, scene.level_starts, brush.strip)
+        sampling.paint_wall(rows, share, (v - up[0], step), brush.strip, brush.texel, brush.mix, brush.column)
 
 
 @kernel(forceinline=True)
@@ -167,12 +147,11 @@ def _climb(
     for i in range(met):
         one, scale = sight.touches[sight.hits[i].touch], lens.focal * sight.hits[i].near
         face, projected = sight.faces[one.face], sight.projected[one.face]
+        # Cut at the peak: the image of a near face reaches far above row 0, where there is no memory.
         foot = max(horizon + scale * (lens.eye - ground), peak)
         if foot < gaze:
             rows = foot, gaze
-            paint_ground(
-                rows, weight, colour, where.eye, lens, scene.texels, scene.level_starts, brush.column
-            )
+            sampling.paint_ground(rows, weight, colour, where.eye, lens, scene, brush.column)
             gaze = foot
         # The far side of a solid is its back; there its top ends and the floor goes on.
         if face.closed and projected.aside > 0.0:
@@ -186,13 +165,14 @@ def _climb(
         if gaze <= peak:
             return
         if face.closed and face.height < lens.eye:
+            # Brightness 1, as the light is in a top's colour already.
             ground, colour = face.height, Ground(face.red, face.green, face.blue, -1, 1.0)
     # Past the last face the ground goes on to the horizon, whatever it is: rooms need not be closed.
     if gaze > horizon:
         rows = horizon, gaze
-        paint_ground(rows, weight, colour, where.eye, lens, scene.texels, scene.level_starts, brush.column)
+        sampling.paint_ground(rows, weight, colour, where.eye, lens, scene, brush.column)
         gaze = horizon
-    paint_backdrop((peak, gaze), weight, backdrop, where.behind, brush.column)
+    sampling.paint_backdrop((peak, gaze), weight, backdrop, where.behind, brush.column)
 
 
 @kernel(forceinline=True)
@@ -207,6 +187,7 @@ def _rows(within: tuple, faces: np.ndarray, lens: Lens, touches: np.ndarray) -> 
         near = lens.focal * max(nearness(one, one.begin), nearness(one, one.end))
         top = min(top, horizon - near * (faces[one.face].height - lens.eye))
         bottom = max(bottom, horizon + near * lens.eye)
+    # int cuts towards zero, which is a row too low only above the image, where it is row 0 anyway.
     return max(int(top), 0), min(int(np.ceil(bottom)), lens.height)
 
 
@@ -229,13 +210,16 @@ def _paint(
 ) -> None:
     """Paint the view from one pose."""
     faces = scene.faces
-    projected, span = np.empty(len(faces), PROJECTED_FACE), np.empty((2 * len(faces), 2))
-    first, listed = project(pose, faces, lens, projected, span)
-    touches, hits = np.empty(len(listed), COLUMN_SPAN), np.empty(len(span), RAY_HIT)
+    projected, span = np.empty(len(faces), raycast.PROJECTED_FACE), np.empty((2 * len(faces), 2))
+    first, listed = raycast.project(pose, faces, lens, projected, span)
+    touches, hits = np.empty(len(listed), raycast.COLUMN_SPAN), np.empty(len(span), raycast.RAY_HIT)
+    # Both ends of all that may touch a column, and the column's own.
     edges, painted = np.empty(2 * len(span) + 2), np.empty((lens.width, 2), np.int64)
     # A block longer than what is read: loops write whole blocks.
     length = lens.height + BLOCK
+    # Zeros, as what is there is taken times zero, and memory that was never written may hold a NaN.
     strip = np.zeros(4 * (int(faces["height"].max() / TEXEL) + BLOCK), np.float32)
+    # Of four bytes like the weights, so that SIMD takes as many of these as of those.
     texel = np.empty(length, np.int32)
     mix = np.empty(length, np.float32), np.empty(length, np.float32), np.empty(length, np.float32)
     column, quad = np.empty(backdrop.shape[1], np.float32), np.empty((4, backdrop.shape[1]), np.uint8)
@@ -244,15 +228,15 @@ def _paint(
     sight = Sight(faces, projected, touches, hits)
     for c in range(lens.width):
         within = first[c], first[c + 1]
-        touch(c, within, listed, _rays(ray, c), faces, projected, span, touches)
+        raycast.touch(c, within, listed, _rays(ray, c), faces, projected, span, touches)
         painted[c] = _rows(within, faces, lens, touches)
     # A plain floor is part of the backdrop, a textured one is painted to the last row.
     if scene.floor.start >= 0:
         painted[:, 1] = lens.height
     # Rows that are backdrop in every column, often half the image, are copied row by row.
     visible = painted[:, 0].min(), painted[:, 1].max()
-    fill(0, visible[0], backdrop, out, words)
-    fill(visible[1], lens.height, backdrop, out, words)
+    pixels.fill(0, visible[0], backdrop, out, words)
+    pixels.fill(visible[1], lens.height, backdrop, out, words)
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
     for c in range(lens.width):
         within, rays, rows = (first[c], first[c + 1]), _rays(ray, c), (painted[c, 0], painted[c, 1])
@@ -263,16 +247,16 @@ def _paint(
         # Half a grey level, so that cutting the sums to bytes rounds them.
         for n in range(in_blocks(4 * (rows[1] - rows[0]))):
             column[np.uint64(4 * rows[0]) + np.uint64(n)] = np.float32(0.5)
-        for p in range(split(within, faces, lens, touches, edges)):
+        for p in range(raycast.split(within, faces, lens, touches, edges)):
             part = edges[p], edges[p + 1]
-            met = meet(0.5 * (part[0] + part[1]), within, faces, projected, touches, hits)
+            met = raycast.meet(0.5 * (part[0] + part[1]), within, faces, projected, touches, hits)
             _climb(part, met, where, sight, scene, lens, backdrop, brush)
-        finish(rows, visible, backdrop, where.behind, column, quad, c & 3)
+        pixels.finish(rows, visible, backdrop, where.behind, column, quad, c & 3)
         # Four columns of three bytes are three words; images of another width go byte by byte.
         if c & 3 == 3 and len(words) > 0:
-            emit_words(quad_words, c - 3, visible, words)
+            pixels.emit_words(quad_words, c - 3, visible, words)
         elif c & 3 == 3 or c == lens.width - 1:
-            emit(quad, c & ~3, (c & 3) + 1, visible, out)
+            pixels.emit(quad, c & ~3, (c & 3) + 1, visible, out)
 
 
 @kernel()

@@ -13,12 +13,14 @@ _QUAD = ir.VectorType(ir.FloatType(), 4)
 def _at(context: Any, builder: Any, kind: Any, array: Any, item: Any) -> Any:
     """Point to the four floats of an item."""
     data = context.make_array(kind)(context, builder, array).data
+    # Twice shifted, as the pointer is to floats and an item has four.
     where = builder.gep(data, [builder.shl(item, ir.Constant(ir.IntType(64), 2))])
     return builder.bitcast(where, _QUAD.as_pointer())
 
 
 def _splat(builder: Any, value: Any) -> Any:
     nothing, word = ir.Constant(_QUAD, ir.Undefined), ir.IntType(32)
+    # What the other lanes hold does not matter: the shuffle takes lane 0 four times.
     one = builder.insert_element(nothing, value, ir.Constant(word, 0))
     return builder.shuffle_vector(one, nothing, ir.Constant(ir.VectorType(word, 4), [0] * 4))
 

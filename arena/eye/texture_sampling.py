@@ -31,6 +31,7 @@ class Ground(typing.NamedTuple):
 @typing.no_type_check
 def in_blocks(count: int) -> int:
     """Round a count of numbers up to blocks of 32."""
+    # A power of two, so that to clear low bits is to round, and four times the eight float32 of AVX2.
     return (count + 31) & ~31
 
 
@@ -38,7 +39,8 @@ def in_blocks(count: int) -> int:
 @typing.no_type_check
 def fade_in(stretch: float) -> float:
     """How much of the next coarser level to mix in, so that none comes suddenly: all at 2 texels."""
-    # One level is enough up to 1.9 texels: a longer fade would have nearly every wall painted twice.
+    # One level is enough up to 1.9 texels: a longer fade would have nearly every wall painted twice. The
+    # reciprocal is a constant when compiled, and a product takes less time than a quotient.
     return min(max((stretch - 1.9) * (1.0 / (2.0 - 1.9)), 0.0), 1.0)
 
 
@@ -78,16 +80,14 @@ def _lie(middle: float, half: float, share: float, start: int, across: int, leng
     """Where the three columns of texels under a stretch start, and their weights."""
     low, high = middle - half, middle + half
     i = int(np.floor(low))
+    # At least one texel wide, as callers see to: the first is covered to its end, and no weight is negative.
     share /= high - low
     second, third = min(high - i - 1.0, 1.0), max(0.0, high - i - 2.0)
     # Tiles are powers of two wide, so that & repeats them, to the left of zero as well.
     a, b = start + length * (i & across - 1), start + length * (i + 1 & across - 1)
     c = start + length * (i + 2 & across - 1)
-    return (a, b, c), (
-        np.float32(share * (i + 1.0 - low)),
-        np.float32(share * second),
-        np.float32(share * third),
-    )
+    weights = np.float32(share * (i + 1.0 - low)), np.float32(share * second), np.float32(share * third)
+    return (a, b, c), weights
 
 
 @kernel(forceinline=True)
@@ -112,7 +112,8 @@ def unroll(
     while u1 - u0 > 2.0 and fine < LEVELS[0] - 2:
         u0, u1, fine = 0.5 * u0, 0.5 * u1, fine + 1
     fade, length = fade_in(u1 - u0), 4 * (TILE[1] >> level)
-    # Over less than one texel: linear interpolation.
+    # Over less than one texel: linear interpolation. Over more than two, which happens at the coarsest level
+    # only, the middle two: there are three columns to read and no more.
     middle, half = 0.5 * (u0 + u1), min(max(0.5 * (u1 - u0), 0.5), 1.0)
     base, across = start + level_starts[fine, level], TILE[0] >> fine
     starts, weight = _lie(middle, half, gain * (1.0 - fade), base, across, length)
@@ -136,6 +137,8 @@ def _weigh(low: np.float32, size: np.float32, share: np.float32) -> tuple:
     """Weights of the three texels under a stretch of one to two, and the first of them."""
     # The lowest row of a wall seen from near would reach up to half a texel below it.
     low = max(low, np.float32(0.0))
+    # Not negative any more, so that cutting towards zero is the floor. Constants are float32, too: one of
+    # double precision would make the whole loop so, and SIMD would take half as many at a time.
     texel = np.int32(low)
     rest = low - np.float32(texel)
     beyond = rest + size - np.float32(1.0)
@@ -169,7 +172,9 @@ def paint_wall(
     for k in range(in_blocks(count)):
         # From the first row, not from the row before: errors do not add up, and rows do not wait.
         t[k], a[k], b[k], c[k] = _weigh(low - np.float32(k) * stride, size, share)
-    for k in (0, count - 1):  # these may be covered in part
+    # These may be covered in part. They are set again, since a test within the loop would rule SIMD out; one
+    # row that is both is set twice, not added twice.
+    for k in (0, count - 1):
         above, below = max(top, float(first + k)), min(bottom, first + k + 1.0)
         size = np.float32(max(step * (below - above), 1.0))
         low, share = np.float32(v - 0.5 * (above + below) * step), np.float32(weight * (below - above)) / size
@@ -211,10 +216,9 @@ def _paint_textured_floor(
         for one in range(2):
             part = share * np.float32(fade if one == 1 else 1.0 - fade)
             # Half a texel less: a texel's colour is that of its middle.
-            u, v = (
-                (x + depth * dx) / (TEXEL * (1 << level + one)) - 0.5,
-                (y + depth * dy) / (TEXEL * (1 << level + one)) - 0.5,
-            )
+            width = TEXEL * (1 << level + one)
+            u, v = (x + depth * dx) / width - 0.5, (y + depth * dy) / width - 0.5
+            # Rooms reach to either side of the origin: int alone would cut negative ones towards it.
             i, j = int(np.floor(u)), int(np.floor(v))
             across, up = TILE[0] >> level + one, TILE[1] >> level + one
             base = floor.start + level_starts[level + one, level + one]
@@ -222,6 +226,7 @@ def _paint_textured_floor(
                 for q in range(2):
                     w = part * np.float32((u - i if p == 1 else i + 1 - u) * (v - j if q == 1 else j + 1 - v))
                     at = base + 4 * (up * (i + p & across - 1) + (j + q & up - 1))
+                    # A product of float32 is off by at most 6e-8 of 255, some 1e-5 of a grey level.
                     for k in range(3):
                         column[4 * r + k] += w * np.float32(texels[at + k])
 
@@ -234,13 +239,12 @@ def paint_ground(
     ground: Ground,
     eye: tuple,
     lens: Lens,
-    texels: np.ndarray,
-    level_starts: np.ndarray,
+    scene: tuple,
     column: np.ndarray,
 ) -> None:
     """Add a level surface to the rows between two image heights."""
     if ground.start >= 0:
-        _paint_textured_floor(rows, weight, ground, eye, lens, texels, level_starts, column)
+        _paint_textured_floor(rows, weight, ground, eye, lens, scene.texels, scene.level_starts, column)
         return
     top, bottom = rows
     for r in range(int(top), int(np.ceil(bottom))):

@@ -33,7 +33,6 @@ class Motion(Protocol):
     @property
     def default_views(self) -> int | None:
         """How many `explore` takes unless told; None takes all there are."""
-        ...
 
     def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
         """Move until this many views are taken.
@@ -43,8 +42,6 @@ class Motion(Protocol):
         ArenaError
             When the body cannot start.
         """
-        ...
 
     def model_dump(self) -> dict[str, object]:
         """Give the parameters."""
-        ...

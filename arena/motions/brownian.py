@@ -9,18 +9,9 @@ import numpy as np
 from arena.angles import signed_turn
 from arena.bodies.disc import Disc, Drive, Pose
 from arena.motions.base import Walk
-from arena.motions.locomotion import (
-    STEP,
-    Positive,
-    Share,
-    Spread,
-    StepLength,
-    random_start,
-    sample_views,
-    turn_by,
-)
+from arena.motions.locomotion import STEP, StepLength, random_start, sample_views, turn_by
 from arena.rooms.arena import Arena
-from arena.settings import Settings
+from arena.settings import Positive, Settings, Share, Spread
 
 
 class Brownian(Settings):
@@ -96,21 +87,14 @@ class Brownian(Settings):
             When the body does not fit, or the start is not free.
         """
         drive = body.place(arena, self.start or random_start(arena, body, rng))
-        steps = self._steps(drive, body, rng)
-        return sample_views(
-            drive,
-            steps,
-            views or self.default_views,
-            view_every_m=self.view_every_m,
-            view_every_rad=self.view_every_rad,
-        )
+        return sample_views(self, drive, self._steps(drive, rng), views or self.default_views)
 
-    def _steps(self, drive: Drive, body: Disc, rng: np.random.Generator) -> Iterator[StepLength]:
+    def _steps(self, drive: Drive, rng: np.random.Generator) -> Iterator[StepLength]:
         memory = math.exp(-STEP / self.wander_time)
         kick = self.wander * math.sqrt(1 - memory**2)
         rate = self.wander * rng.standard_normal()
         while True:
-            speed = min(body.max_speed, max(0.2 * self.speed, rng.normal(self.speed, self.speed_spread)))
+            speed = max(0.2 * self.speed, rng.normal(self.speed, self.speed_spread))
             left, shy = rng.exponential(self.run_length), self.shyness * rng.random() ** 2
             away = None
             while left > 0 and away is None:
@@ -127,4 +111,4 @@ class Brownian(Settings):
                 angle = self.spin * rng.standard_normal()
             else:
                 continue
-            yield from turn_by(drive, angle, min(self.spin_speed, body.max_turn))
+            yield from turn_by(drive, angle, self.spin_speed)

@@ -11,13 +11,16 @@ from arena.angles import signed_turn
 from arena.bodies.disc import Disc, Drive, Pose
 from arena.errors import ArenaError
 from arena.motions.base import Walk
-from arena.motions.locomotion import STEP, Positive, StepLength, random_start, sample_views, turn_by
+from arena.motions.locomotion import STEP, StepLength, random_start, sample_views, turn_by
 from arena.rooms.arena import Arena
-from arena.settings import Settings
+from arena.settings import Positive, Settings
 from arena.smell.odour import OdourField
 
 ENOUGH = 0.5
 """Where it smells less than this share of the strongest stay was no stay at the maximum."""
+
+Leg = tuple[float | None, Iterator[StepLength]]
+"""How strong it smells where this is a stay at a maximum, and the steps."""
 
 
 class Chemotaxis(Settings):
@@ -83,55 +86,39 @@ class Chemotaxis(Settings):
             )
         drive = body.place(arena, self.start or random_start(arena, body, rng))
         stays: list[tuple[float, int, int]] = []
-        steps = _counted(self._legs(drive, body, arena.odours, rng), stays)
-        walk = sample_views(
-            drive,
-            steps,
-            views or self.default_views,
-            view_every_m=self.view_every_m,
-            view_every_rad=self.view_every_rad,
-        )
+        steps = _counted(self._legs(drive, arena.odours, rng), stays)
+        walk = sample_views(self, drive, steps, views or self.default_views)
         strength, first, last = np.reshape(stays, (-1, 3)).T
         counts = np.rint(walk.times / STEP)
         spans = np.stack([np.searchsorted(counts, first), np.searchsorted(counts, last, "right")], axis=1)
-        return walk._replace(
-            notes={"at_maximum": spans[strength > ENOUGH * strength.max(initial=0)].tolist()}
-        )
+        strong = strength > ENOUGH * strength.max(initial=0)
+        return walk._replace(notes={"at_maximum": spans[strong].tolist()})
 
-    def _legs(
-        self, drive: Drive, body: Disc, odours: OdourField, rng: np.random.Generator
-    ) -> Iterator[tuple[float | None, Iterator[StepLength]]]:
-        """Give the legs of the way, one by one, and how strong it smells where one is a stay at a maximum."""
-        turn_rate, speed = min(self.turn_rate, body.max_turn), min(self.speed, body.max_speed)
+    def _legs(self, drive: Drive, odours: OdourField, rng: np.random.Generator) -> Iterator[Leg]:
+        """Give the legs of the way, one by one."""
         while True:
-            yield None, self._climb(drive, odours, turn_rate, speed)
+            yield None, self._climb(drive, odours)
             strength, _ = self._smell(drive, odours)
-            yield (
-                strength,
-                turn_by(drive, rng.choice([-1, 1]) * (2 * math.pi + self.view_every_rad), turn_rate),
-            )
-            yield None, self._go_away(drive, turn_rate, speed, rng)
+            angle = rng.choice([-1, 1]) * (2 * math.pi + self.view_every_rad)
+            yield strength, turn_by(drive, angle, self.turn_rate)
+            yield None, self._go_away(drive, rng)
 
-    def _climb(
-        self, drive: Drive, odours: OdourField, turn_rate: float, speed: float
-    ) -> Iterator[StepLength]:
+    def _climb(self, drive: Drive, odours: OdourField) -> Iterator[StepLength]:
         stride = self.stride
         strength, gradient = self._smell(drive, odours)
         while stride > self.precision:
             x, y, heading = drive.pose
-            yield from turn_by(drive, signed_turn(heading, gradient), turn_rate)
-            yield from _run(drive, stride, speed, slide=True)
+            yield from turn_by(drive, signed_turn(heading, gradient), self.turn_rate)
+            yield from _run(drive, stride, self.speed, slide=True)
             before, (strength, gradient) = strength, self._smell(drive, odours)
             if strength <= before or math.dist((x, y), drive.pose[:2]) < 0.02 * stride:
                 stride *= 0.25
 
-    def _go_away(
-        self, drive: Drive, turn_rate: float, speed: float, rng: np.random.Generator
-    ) -> Iterator[StepLength]:
+    def _go_away(self, drive: Drive, rng: np.random.Generator) -> Iterator[StepLength]:
         left, angle = self.push * rng.uniform(0.5, 1.5), rng.uniform(-math.pi, math.pi)
         while left > 1e-9:
-            yield from turn_by(drive, angle, turn_rate)
-            left = yield from _run(drive, left, speed, slide=False)
+            yield from turn_by(drive, angle, self.turn_rate)
+            left = yield from _run(drive, left, self.speed, slide=False)
             away = drive.pose[2] if drive.contact is None else drive.contact
             angle = signed_turn(drive.pose[2], away + rng.uniform(-0.5, 0.5) * math.pi)
 
@@ -151,9 +138,7 @@ def _run(drive: Drive, length: float, speed: float, *, slide: bool) -> Generator
     return length
 
 
-def _counted(
-    legs: Iterator[tuple[float | None, Iterator[StepLength]]], stays: list[tuple[float, int, int]]
-) -> Iterator[StepLength]:
+def _counted(legs: Iterator[Leg], stays: list[tuple[float, int, int]]) -> Iterator[StepLength]:
     """Join legs; note of every stay how strong it smells and the steps between which it lasts."""
     step = 0
     for strength, leg in legs:

@@ -64,9 +64,8 @@ def _longest(region: BaseGeometry, platform: tuple[tuple[Point, ...], ...]) -> t
     along = np.stack([np.cos(angles), np.sin(angles)], axis=1)[:, None]
     middle = (low + high) / 2 + offset * (along[..., ::-1] * [-1, 1])
     ends = np.stack([middle - reach * along, middle + reach * along], axis=2).reshape(-1, 2, 2)
-    pieces, line = shapely.get_parts(
-        shapely.intersection(shapely.linestrings(ends), region), return_index=True
-    )
+    inside = shapely.intersection(shapely.linestrings(ends), region)
+    pieces, line = shapely.get_parts(inside, return_index=True)
     aside = np.abs(offset).ravel()[line % _LINES]
     best = pieces[np.argmax(shapely.length(pieces) - 0.01 * aside)]
     (x0, y0), (x1, y1) = best.coords[0], best.coords[-1]

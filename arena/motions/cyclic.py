@@ -10,18 +10,9 @@ from pydantic import Field
 from arena.bodies.disc import Disc, Drive
 from arena.motions.base import Walk
 from arena.motions.corridor import corridor
-from arena.motions.locomotion import (
-    Point,
-    Positive,
-    Spread,
-    StepLength,
-    bearing,
-    go_to,
-    sample_views,
-    turn_by,
-)
+from arena.motions.locomotion import Point, StepLength, bearing, go_to, sample_views, turn_by
 from arena.rooms.arena import Arena
-from arena.settings import Settings
+from arena.settings import Positive, Settings, Spread
 
 FACING = 0.6
 """How much more than a full spin it takes to face the next corner, on average, rad."""
@@ -77,10 +68,8 @@ class Cyclic(Settings):
         start, end, room = corridor(arena, body, self.width / 2, self.ends)
         drive = body.place(arena, (*start, rng.uniform(-np.pi, np.pi)))
         spins = max(1, round(views * self.view_every_rad / (2 * np.pi + FACING) / self.passes))
-        steps = self._zigzag(drive, body, self._corners(start, end, room, spins, rng))
-        return sample_views(
-            drive, steps, views, view_every_m=self.view_every_m, view_every_rad=self.view_every_rad
-        )
+        steps = self._zigzag(drive, self._corners(start, end, room, spins, rng))
+        return sample_views(self, drive, steps, views)
 
     def _corners(
         self, start: Point, end: Point, room: float, spins: int, rng: np.random.Generator
@@ -88,15 +77,13 @@ class Cyclic(Settings):
         along = np.subtract(end, start)
         across = np.array([-along[1], along[0]]) / np.hypot(*along)
         while True:
-            for order in (range(spins), range(spins)[::-1]):
-                for part in order:
-                    share, side = (part + rng.random()) / spins, room * rng.uniform(-1, 1)
-                    x, y = start + share * along + side * across
-                    yield float(x), float(y)
+            for part in (*range(spins), *reversed(range(spins))):
+                share, side = (part + rng.random()) / spins, room * rng.uniform(-1, 1)
+                x, y = start + share * along + side * across
+                yield float(x), float(y)
 
-    def _zigzag(self, drive: Drive, body: Disc, corners: Iterator[Point]) -> Iterator[StepLength]:
-        turn_rate, speed = min(self.turn_rate, body.max_turn), min(self.speed, body.max_speed)
+    def _zigzag(self, drive: Drive, corners: Iterator[Point]) -> Iterator[StepLength]:
         for corner in corners:
             face = bearing(drive.pose, corner)
-            yield from turn_by(drive, face + math.copysign(2 * math.pi, face), turn_rate)
-            yield from go_to(drive, corner, speed)
+            yield from turn_by(drive, face + math.copysign(2 * math.pi, face), self.turn_rate)
+            yield from go_to(drive, corner, self.speed)

@@ -2,10 +2,9 @@
 
 import math
 from collections.abc import Iterator
-from typing import Annotated
+from typing import Protocol, runtime_checkable
 
 import numpy as np
-from pydantic import Field
 from shapely.geometry.base import BaseGeometry
 
 from arena.angles import signed_turn
@@ -25,18 +24,22 @@ Point = tuple[float, float]
 StepLength = tuple[float, float]
 """How far a step went (m) and turned (rad), neither negative."""
 
-Positive = Annotated[float, Field(ge=0.01, le=100)]
-Spread = Annotated[float, Field(ge=0, le=100)]
-Share = Annotated[float, Field(ge=0, le=1)]
+
+@runtime_checkable
+class LooksOften(Protocol):
+    """A motion that looks when it has moved this far (m) or turned this much (rad) since the last view."""
+
+    view_every_m: float
+    view_every_rad: float
 
 
-def sample_views(
-    drive: Drive, steps: Iterator[StepLength], views: int, *, view_every_m: float, view_every_rad: float
-) -> Walk:
+def sample_views(motion: LooksOften, drive: Drive, steps: Iterator[StepLength], views: int) -> Walk:
     """Take a view at the start and after every `view_every_m` or `view_every_rad`, whichever comes first.
 
     Parameters
     ----------
+    motion
+        How often it looks.
     drive
         The body.
     steps
@@ -52,17 +55,17 @@ def sample_views(
             break
         gone += way
         turned += turn
-        if gone >= view_every_m or turned >= view_every_rad:
+        if gone >= motion.view_every_m or turned >= motion.view_every_rad:
             times[seen], poses[seen] = now * STEP, drive.pose
             seen, gone, turned = seen + 1, 0.0, 0.0
     return Walk(times, poses)
 
 
 def turn_by(drive: Drive, angle: float, turn_rate: float) -> Iterator[StepLength]:
-    """Turn on the spot by an angle (rad) at a turn rate (rad/s) that the body can keep."""
-    turn_rate *= STEP
+    """Turn on the spot by an angle (rad) at a turn rate (rad/s), or as fast as the body can."""
+    most = min(turn_rate, drive.body.max_turn) * STEP
     while angle:
-        turn = math.copysign(min(abs(angle), turn_rate), angle)
+        turn = math.copysign(min(abs(angle), most), angle)
         drive.step(0.0, turn / STEP, STEP)
         yield 0.0, abs(turn)
         angle -= turn
@@ -77,7 +80,7 @@ def bearing(pose: Pose, goal: Point) -> float:
 
 
 def go_to(drive: Drive, goal: Point, speed: float) -> Iterator[StepLength]:
-    """Go to a goal (m) straight ahead at a speed (m/s), until there, past it, or something is hit."""
+    """Go to a goal (m) straight ahead at a speed (m/s) or the body's, until there, past it, or a hit."""
     braking = 2 * (drive.body.max_acceleration or math.inf)
     while True:
         pose = drive.pose

@@ -17,12 +17,16 @@ _NAMES = ("t", "x", "y", "heading", "heading_deg")
 _DAMAGE = (ValueError, LookupError, RuntimeError, EOFError, csv.Error, zipfile.BadZipFile, zlib.error)
 
 
+Times = Float[np.ndarray, " samples"]
+Positions = Float[np.ndarray, "samples 2"]
+
+
 class RecordedPath(NamedTuple):
     """Where an animal was, as recorded: NaN where the tracker lost it, or its head."""
 
-    times: Float[np.ndarray, " samples"]
+    times: Times
     """s, increasing."""
-    positions: Float[np.ndarray, "samples 2"]
+    positions: Positions
     headings: Float[np.ndarray, " samples"] | None
     """rad."""
 

@@ -14,7 +14,7 @@ from arena.bodies.disc import TOLERANCE, Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
 from arena.motions.locomotion import Point, free_space
-from arena.motions.paths import RecordedPath, read_path
+from arena.motions.paths import Positions, RecordedPath, Times, read_path
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 
@@ -104,9 +104,7 @@ class Replay(Settings):
         poses = np.column_stack([positions, wrap_angle(headings)])[taken]
         return Walk(times[taken] - times[0], poses, {**notes, "clipped": clipped})
 
-    def _placed(
-        self, positions: Float[np.ndarray, "samples 2"], free: BaseGeometry
-    ) -> Float[np.ndarray, "samples 2"]:
+    def _placed(self, positions: Positions, free: BaseGeometry) -> Positions:
         """Bring the path into the room."""
         if not self.fit:
             return self.scale * positions + self.offset
@@ -117,9 +115,7 @@ class Replay(Settings):
         placed: np.ndarray = (positions - (low + high) / 2) * scale + room.mean(axis=0)
         return placed
 
-    def _ahead(
-        self, times: Float[np.ndarray, " samples"], positions: Float[np.ndarray, "samples 2"]
-    ) -> Float[np.ndarray, " samples"]:
+    def _ahead(self, times: Times, positions: Positions) -> Times:
         """Give the direction of motion, rad, unwrapped."""
         ends = [np.clip(times + sign * self.smoothing / 2, times[0], times[-1]) for sign in (-1, 1)]
         before, after = (_at(end, times, positions) for end in ends)
@@ -133,9 +129,7 @@ class Replay(Settings):
         ahead: np.ndarray = np.interp(times, times[moving], np.unwrap(np.arctan2(y, x)[moving]))
         return ahead
 
-    def _taken(
-        self, times: Float[np.ndarray, " samples"], positions: Float[np.ndarray, "samples 2"]
-    ) -> Int[np.ndarray, " views"]:
+    def _taken(self, times: Times, positions: Positions) -> Int[np.ndarray, " views"]:
         """Say at which samples views are taken."""
         if self.interval is not None:
             gone, every = times - times[0], self.interval
@@ -147,13 +141,7 @@ class Replay(Settings):
         # Rounding must not put a sample that is due into the interval before.
         return np.unique(np.floor(gone / every + 1e-9), return_index=True)[1]
 
-    def _kept(
-        self,
-        arena: Arena,
-        body: Disc,
-        times: Float[np.ndarray, " samples"],
-        positions: Float[np.ndarray, "samples 2"],
-    ) -> tuple[Float[np.ndarray, "samples 2"], int]:
+    def _kept(self, arena: Arena, body: Disc, times: Times, positions: Positions) -> tuple[Positions, int]:
         """Keep the path in free space, and count the positions that had to be moved."""
         outside = np.flatnonzero(~arena.is_free(positions, max(0.0, body.radius - TOLERANCE)))
         if len(outside) and not self.clip:
@@ -170,9 +158,7 @@ class Replay(Settings):
         return kept, len(outside)
 
 
-def _bridged(
-    path: RecordedPath,
-) -> tuple[Float[np.ndarray, " samples"], Float[np.ndarray, "samples 2"], dict[str, object]]:
+def _bridged(path: RecordedPath) -> tuple[Times, Positions, dict[str, object]]:
     """Fill gaps; give times, positions, and what there is to tell."""
     known = np.flatnonzero(np.isfinite(path.positions).all(axis=1))
     times, positions = path.times[known], path.positions[known]
@@ -199,8 +185,6 @@ def _bridged(
 
 
 def _at(
-    when: Float[np.ndarray, " moments"],
-    times: Float[np.ndarray, " samples"],
-    positions: Float[np.ndarray, "samples 2"],
+    when: Float[np.ndarray, " moments"], times: Times, positions: Positions
 ) -> Float[np.ndarray, "moments 2"]:
     return np.stack([np.interp(when, times, along) for along in positions.T], axis=1)

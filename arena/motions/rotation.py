@@ -9,9 +9,9 @@ from pydantic import Field
 from arena.angles import signed_turn
 from arena.bodies.disc import Disc
 from arena.motions.base import Walk
-from arena.motions.locomotion import STEP, Point, Positive, Share, free_space
+from arena.motions.locomotion import STEP, Point, free_space
 from arena.rooms.arena import Arena
-from arena.settings import Settings
+from arena.settings import Positive, Settings, Share
 
 
 class Rotation(Settings):

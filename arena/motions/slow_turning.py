@@ -10,9 +10,8 @@ from arena.angles import wrap_angle
 from arena.bodies.disc import Disc
 from arena.motions.base import Walk
 from arena.motions.brownian import Brownian
-from arena.motions.locomotion import Positive, Spread
 from arena.rooms.arena import Arena
-from arena.settings import Settings
+from arena.settings import Positive, Settings, Spread
 
 
 class SlowTurning(Settings):

@@ -9,18 +9,9 @@ import numpy as np
 from arena.bodies.disc import Disc, Drive
 from arena.motions.base import Walk
 from arena.motions.corridor import corridor
-from arena.motions.locomotion import (
-    Point,
-    Positive,
-    Spread,
-    StepLength,
-    bearing,
-    go_to,
-    sample_views,
-    turn_by,
-)
+from arena.motions.locomotion import Point, StepLength, bearing, go_to, sample_views, turn_by
 from arena.rooms.arena import Arena
-from arena.settings import Settings
+from arena.settings import Positive, Settings, Spread
 
 ROOM = 0.02
 """Kept from walls along the way, where there is as much, m."""
@@ -67,26 +58,16 @@ class Track(Settings):
         """
         here, there, _ = corridor(arena, body, ROOM, self.ends)
         drive = body.place(arena, (*here, math.atan2(there[1] - here[1], there[0] - here[0])))
-        steps = self._runs(drive, body, (here, there), rng)
-        return sample_views(
-            drive,
-            steps,
-            views or self.default_views,
-            view_every_m=self.view_every_m,
-            view_every_rad=self.view_every_rad,
-        )
+        return sample_views(self, drive, self._runs(drive, here, there, rng), views or self.default_views)
 
     def _runs(
-        self, drive: Drive, body: Disc, ends: tuple[Point, Point], rng: np.random.Generator
+        self, drive: Drive, here: Point, there: Point, rng: np.random.Generator
     ) -> Iterator[StepLength]:
-        here, there = ends
         while True:
-            speed = min(body.max_speed, max(0.2 * self.speed, rng.normal(self.speed, self.speed_spread)))
+            speed = max(0.2 * self.speed, rng.normal(self.speed, self.speed_spread))
             short = rng.random() * min(0.5, self.view_every_m / math.dist(here, there))
             x, y = (b + short * (a - b) for a, b in zip(here, there, strict=True))
             yield from go_to(drive, (x, y), speed)
             here, there = there, here
             back, side = bearing(drive.pose, there), rng.choice([-1, 1])
-            yield from turn_by(
-                drive, side * (side * back % (2 * math.pi)), min(self.turn_rate, body.max_turn)
-            )
+            yield from turn_by(drive, side * (side * back % (2 * math.pi)), self.turn_rate)

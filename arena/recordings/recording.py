@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float32, Float64, Int, Shaped, UInt8
 
 from arena.errors import ArenaError
 from arena.recordings import storage
-from arena.recordings.sharding import shards
+from arena.recordings.sharding import shards, write_shards
 from arena.recordings.storage import StoredViews
 
 Images = UInt8[np.ndarray, "views height width 3"]
@@ -90,11 +90,9 @@ class Recording:
         ArenaError
             When there is something at the path already, or it cannot be written.
         """
-        with storage.new_folder(Path(path)) as folder:
-            storage.lay_out(folder, self.views.shape, self._columns, self.attributes)
-            with storage.writable_views(folder) as views:
-                for rows in shards(len(self)):
-                    views[rows] = np.asarray(self.views[rows])
+        views = ((rows, np.asarray(self.views[rows])) for rows in shards(len(self)))
+        with storage.new_folder(Path(path), self.views.shape, self._columns, self.attributes) as folder:
+            write_shards(folder / "views", views)
 
     @classmethod
     def open(cls, path: str | Path) -> "Recording":

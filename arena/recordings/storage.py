@@ -12,7 +12,7 @@ from zarr.codecs import Crc32cCodec
 
 from arena.atomic import atomic_write
 from arena.errors import ArenaError
-from arena.recordings.sharding import SHARD, Writer, codecs, file, is_complete, shard_writer, shards
+from arena.recordings.sharding import SHARD, codecs, file, is_complete, shards
 
 VERSION = 3
 """Of the layout."""
@@ -57,17 +57,10 @@ class StoredViews:
         found = images.reshape(*index.shape, *self.shape[1:])
         return np.asarray(found[(slice(None),) * index.ndim + tuple(within)])
 
-    def missing(self) -> list[slice]:
-        """Which views are not there or cannot be read, by shards."""
-        return [rows for rows in shards(len(self)) if not self._is_complete(rows)]
-
-    def _is_complete(self, rows: slice) -> bool:
-        return is_complete(file(self._folder, rows), rows.stop - rows.start)
-
     def _read(self, shard: slice, chosen: np.ndarray) -> np.ndarray:
         first = chosen.min()
         try:
-            if not self._is_complete(shard):  # for zarr, views of a shard that is gone are black
+            if not is_complete(self._folder, shard):  # for zarr, views of a shard that is gone are black
                 raise ValueError("the file is not whole")
             found = np.asarray(self._array[first : chosen.max() + 1])
         except _DAMAGE as error:
@@ -90,37 +83,28 @@ class Stored(NamedTuple):
 
 
 @contextmanager
-def new_folder(path: Path) -> Iterator[Path]:
-    """Give a folder to fill, which takes the name `path` at the end; whatever fails or is killed leaves none.
+def new_folder(
+    path: Path, shape: tuple[int, ...], columns: Mapping[str, np.ndarray], attributes: Mapping[str, Any]
+) -> Iterator[Path]:
+    """Give a folder that lacks but the views of this shape; it takes the name `path` at the end.
+
+    Whatever fails or is killed leaves none. `sharding.write_shards` puts the views into its folder `views`,
+    now or later. Of the attributes, `version` and `arrays` are the layout's own.
 
     Raises
     ------
     ArenaError
         When there is something at `path`, or the folder cannot be written.
     """
-    with atomic_write(path, ArenaError, overwrite=False) as folder:
-        folder.mkdir()
-        yield folder
-
-
-def lay_out(
-    folder: Path, shape: tuple[int, ...], columns: Mapping[str, np.ndarray], attributes: Mapping[str, Any]
-) -> None:
-    """Write everything but the views; of the attributes, `version` and `arrays` are the layout's own."""
     own = {"version": VERSION, "arrays": list(columns)}
-    group = zarr.create_group(folder, zarr_format=3, attributes={**attributes, **own})
-    # By default zeros would not be written at all, and could not be told from a file that was lost.
-    with zarr.config.set({"array.write_empty_chunks": True}):
-        for name, values in columns.items():
-            group.create_array(name, **_described(name, values.shape, str(values.dtype)))[...] = values
-    group.create_array("views", **_described("views", shape, "uint8"))
-
-
-@contextmanager
-def writable_views(path: Path) -> Iterator[Writer]:
-    """Write shards of views; see `sharding.shard_writer`."""
-    with shard_writer(path / "views") as writer:
-        yield writer
+    with atomic_write(path, ArenaError, overwrite=False) as folder:
+        group = zarr.create_group(folder, zarr_format=3, attributes={**attributes, **own})
+        # By default zeros would not be written at all, and could not be told from a file that was lost.
+        with zarr.config.set({"array.write_empty_chunks": True}):
+            for name, values in columns.items():
+                group.create_array(name, **_described(name, values.shape, str(values.dtype)))[...] = values
+        group.create_array("views", **_described("views", shape, "uint8"))
+        yield folder
 
 
 def load(path: Path) -> Stored:
@@ -149,7 +133,7 @@ def load(path: Path) -> Stored:
         # One by one: of what a group says of its arrays, zarr prints what it cannot read.
         columns = {name: _whole(path / name) for name in attributes.pop("arrays")}
         views = StoredViews(path / "views")
-        missing = views.missing()
+        missing = [rows for rows in shards(len(views)) if not is_complete(path / "views", rows)]
     except _DAMAGE as error:
         raise ArenaError(f"{path} is damaged ({_first_line(error)}); record it again") from None
     return Stored(views, columns, attributes, missing)
@@ -159,12 +143,8 @@ def _described(name: str, shape: tuple[int, ...], dtype: str) -> dict[str, Any]:
     """Describe an array to zarr; all but the views are one chunk."""
     described: dict[str, Any] = {"shape": shape, "dtype": dtype}
     if name == "views":
-        return {
-            **described,
-            "chunks": (1, *shape[1:]),
-            "shards": (SHARD, *shape[1:]),
-            "compressors": codecs(),
-        }
+        in_shards = {"chunks": (1, *shape[1:]), "shards": (SHARD, *shape[1:])}
+        return {**described, **in_shards, "compressors": codecs()}
     return {**described, "chunks": tuple(max(1, size) for size in shape), "compressors": Crc32cCodec()}
 
 

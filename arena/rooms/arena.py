@@ -22,7 +22,7 @@ from arena.errors import ArenaError
 from arena.eye.scene import Scene, scene
 from arena.rooms.light import Light
 from arena.rooms.parts import Block, Box, FrozenModel, Length, Material, Pillar, Polygon, Solid, Source, Wall
-from arena.rooms.schema import schema
+from arena.rooms.schema import TidySchema
 from arena.rooms.surfaces import Surfaces, surfaces
 from arena.settings import first_error
 from arena.smell.odour import OdourField
@@ -118,14 +118,12 @@ class Arena(FrozenModel):
                 )
             return cls.parse(file.read_text(encoding="utf-8"))
         try:
-            text = path.read_text(encoding="utf-8")
+            return cls.parse(path.read_text(encoding="utf-8"))
+        except ArenaError as error:
+            raise ArenaError(f"{path}: {error}") from None
         except (OSError, UnicodeDecodeError) as error:
             reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
             raise ArenaError(f"cannot read the arena {path}: {reason}") from None
-        try:
-            return cls.parse(text)
-        except ArenaError as error:
-            raise ArenaError(f"{path}: {error}") from None
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Arena:  # noqa: ARG002
         """Copy the arena with some fields changed; the copy is checked like any other."""
@@ -197,8 +195,8 @@ class Arena(FrozenModel):
     def space(self) -> pymunk.Space:
         """Build a pymunk space without gravity from the walls, solids and platform border."""
         space = pymunk.Space()
-        border = self.walkable
-        rings = [ring for part in shapely.get_parts(border) for ring in (part.exterior, *part.interiors)]
+        parts = shapely.get_parts(self.walkable)
+        rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
         rings += [shapely.LinearRing(solid.outline) for solid in self.solids]
         edges = [pair for ring in rings for pair in zip(ring.coords[:-1], ring.coords[1:], strict=True)]
         edges += [(wall.start, wall.end) for wall in self.walls]
@@ -235,7 +233,7 @@ class Arena(FrozenModel):
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
         """Describe the TOML file as JSON Schema; what only geometry can tell is checked on reading."""
-        return schema(cls)
+        return {"$schema": TidySchema.schema_dialect, **cls.model_json_schema(schema_generator=TidySchema)}
 
 
 def gallery() -> list[str]:

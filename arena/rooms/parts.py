@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import shapely
@@ -30,10 +30,6 @@ def _known(name: str) -> str:
     return name
 
 
-def _name_all(schema: dict[str, Any]) -> None:
-    schema["enum"] = list(materials())
-
-
 def _simple(corners: tuple[Point, ...]) -> tuple[Point, ...]:
     sides = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
     if sides.min() < SHORTEST:
@@ -46,9 +42,8 @@ def _simple(corners: tuple[Point, ...]) -> tuple[Point, ...]:
 
 Polygon = Annotated[tuple[Point, ...], Field(min_length=3), AfterValidator(_simple)]
 """Corners (m) in either order around."""
-Material = TypeAliasType(
-    "Material", Annotated[str, AfterValidator(_known), Field(json_schema_extra=_name_all)]
-)
+_Named = Field(json_schema_extra=lambda schema: schema.update(enum=list(materials())))
+Material = TypeAliasType("Material", Annotated[str, AfterValidator(_known), _Named])
 """The name of a recipe in `arena.rooms.recipes`."""
 
 

@@ -12,6 +12,10 @@ from arena.errors import ArenaError
 from arena.kernels import kernel
 from arena.settings import Settings
 
+Concentrations = Float[np.ndarray, "views odorants"]
+Smells = Float32[np.ndarray, "views odorants"]
+Times = Float[np.ndarray, " views"]
+
 
 class Nose(Settings):
     r"""A nose whose gain jitters from view to view and, if told so, drifts.
@@ -40,12 +44,7 @@ class Nose(Settings):
     fluctuation: Annotated[float, Field(ge=0, le=10)] = 0.0
     correlation_time: Annotated[float, Field(gt=0)] = 60.0
 
-    def smell(
-        self,
-        concentrations: Float[np.ndarray, "views odorants"],
-        times: Float[np.ndarray, " views"],
-        rng: np.random.Generator,
-    ) -> Float32[np.ndarray, "views odorants"]:
+    def smell(self, concentrations: Concentrations, times: Times, rng: np.random.Generator) -> Smells:
         """Smell the concentrations (> 0) met at these times (s, never decreasing).
 
         Raises
@@ -71,11 +70,7 @@ class Sniffer:
         # All is forgotten since then, so that the first gain comes from the stationary distribution.
         self._time = np.array([-np.inf])
 
-    def smell(
-        self,
-        concentrations: Float[np.ndarray, "views odorants"],
-        times: Float[np.ndarray, " views"],
-    ) -> Float32[np.ndarray, "views odorants"]:
+    def smell(self, concentrations: Concentrations, times: Times) -> Smells:
         """Go on smelling; views smelt in several calls are the same, bit by bit, as in one.
 
         Raises

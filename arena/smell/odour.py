@@ -108,10 +108,6 @@ class OdourField:
             )
         return out
 
-    def _within(self, xy: Float[np.ndarray, "points 2"]) -> Bool[np.ndarray, " points"]:
-        low, high = np.reshape(self.bounds, (2, 2))
-        return np.asarray(((xy >= low) & (xy <= high)).all(axis=1))
-
     @property
     def _shape(self) -> tuple[int, int]:
         extent = np.subtract(self.bounds[2:], self.bounds[:2])
@@ -165,12 +161,13 @@ class OdourField:
     def _spread(self) -> Float[np.ndarray, "cells odorants"]:
         """Each source as weights of the cells around it, summing to one."""
         out = np.zeros((*self._shape, len(self.sources)))
+        low, high = np.reshape(self.bounds, (2, 2))
         for odorant, source in enumerate(self.sources):
-            if not self._within(source[None])[0]:
+            if not ((low <= source) & (source <= high)).all():
                 raise ArenaError(
                     f"odour source {odorant} at {source.tolist()} is outside the room; move it inside"
                 )
-            base, fraction = np.divmod((source - self.bounds[:2]) / self._step - 0.5, 1)
+            base, fraction = np.divmod((source - low) / self._step - 0.5, 1)
             corners = base.astype(int) + np.array([[0, 0], [1, 0], [0, 1], [1, 1]])
             weight = np.prod(np.where(corners > base, fraction, 1 - fraction), axis=1)
             # Outside the grid is the mirror image of the cell inside.

@@ -1,7 +1,5 @@
 """Commands about maps: learn one, score it, write down what its cells do."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import Any
@@ -9,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from arena import Recording
-from cogmap.atomic import check_absent
-from cogmap.commands.app import Json, Seed, app, tell, with_truth
+from arena.atomic import check_absent
+from cogmap.commands.app import Json, Seed, app, tell
+from cogmap.errors import CogmapError
 from cogmap.evaluation.populations import usual_charts
 from cogmap.evaluation.scoring import score
 from cogmap.export import export_nwb
@@ -35,21 +34,12 @@ def _learn(
         Of the map; 3000 by default, a third of the views when these are few.
     """
     walk = Recording.open(recording).without_truth()
-    check_absent(out)
+    check_absent(out, CogmapError)
     cmap = CognitiveMap(charts=usual_charts(len(walk)) if charts is None else charts, seed=seed)
     cmap.fit(walk.views, walk.odours, progress=sys.stderr.isatty())
     cmap.save(out)
-    tell(
-        {
-            "map": str(out),
-            "charts": cmap.charts,
-            "trusted": cmap.trusted_,
-            "reason": cmap.reason_,
-            "metric_reason": cmap.metric_reason_,
-            "seconds": cmap.seconds_,
-        },
-        as_json=as_json,
-    )
+    about = {"map": str(out), "charts": cmap.charts, **_verdict(cmap), "seconds": cmap.seconds_}
+    tell(about, as_json=as_json)
 
 
 @app.command(name="score")
@@ -68,13 +58,10 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
         The recording that the map was learnt from, on which the decoder is fitted.
     """
     grown = CognitiveMap.load(cmap)
-    fresh, walk = with_truth(recording), with_truth(train)
+    fresh, walk = _with_truth(recording), _with_truth(train)
     seen, known = grown.perceive(fresh.views), grown.perceive(walk.views)
-    figures: dict[str, Any] = dict(
-        score(seen, np.asarray(fresh.poses), train=(known, np.asarray(walk.poses)))
-    )
-    summary = {"trusted": grown.trusted_, "reason": grown.reason_, "metric_reason": grown.metric_reason_}
-    tell({**summary, **figures}, as_json=as_json)
+    figures = score(seen, np.asarray(fresh.poses), train=(known, np.asarray(walk.poses)))
+    tell({**_verdict(grown), **figures}, as_json=as_json)
 
 
 @app.command(name="export")
@@ -92,9 +79,20 @@ def _export(recording: Path, cmap: Path, /, *, out: Path, seed: Seed = 0, as_jso
     out
         The file; it must not exist.
     """
-    walk, grown = with_truth(recording), CognitiveMap.load(cmap)
+    walk, grown = _with_truth(recording), CognitiveMap.load(cmap)
     export_nwb(walk, grown, out, seed=seed)
-    tell(
-        {"nwb": str(out), "views": len(walk), "units": grown.place_cells + grown.heading_cells},
-        as_json=as_json,
-    )
+    units = grown.place_cells + grown.heading_cells
+    tell({"nwb": str(out), "views": len(walk), "units": units}, as_json=as_json)
+
+
+def _with_truth(path: Path) -> Recording:
+    """Open a recording that has poses."""
+    recording = Recording.open(path)
+    if recording.poses is None:
+        raise CogmapError(f"{path} has no poses to score against; use a recording that kept them")
+    return recording
+
+
+def _verdict(cmap: CognitiveMap) -> dict[str, Any]:
+    """Tell whether a map is to be trusted, and why not."""
+    return {"trusted": cmap.trusted_, "reason": cmap.reason_, "metric_reason": cmap.metric_reason_}

@@ -1,7 +1,5 @@
 """Commands that find something out, and the one that shows it."""
 
-from __future__ import annotations
-
 import json
 import sys
 from pathlib import Path
@@ -159,13 +157,8 @@ def _sweep(
             "--retry-failed does them again\n"
         )
     untrusted = int((~table["trusted"].fillna(value=True)).sum())
-    summary = {
-        "table": str(out / "table.csv"),
-        "rows": len(table),
-        "failed": len(failed),
-        "untrusted": untrusted,
-    }
-    tell(summary, as_json=as_json)
+    counts = {"rows": len(table), "failed": len(failed), "untrusted": untrusted}
+    tell({"table": str(out / "table.csv"), **counts}, as_json=as_json)
 
 
 @app.command(name="report")

@@ -1,7 +1,5 @@
 """Commands about rooms and the ways through them."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import Annotated, Literal
@@ -9,10 +7,11 @@ from typing import Annotated, Literal
 from cyclopts import Parameter
 
 from arena import Arena, Camera, Disc, Nose, explore, gallery
+from arena.atomic import check_absent
 from arena.bodies.catalogue import bodies
 from arena.motions.catalogue import motions
-from cogmap.atomic import check_absent
-from cogmap.commands.app import Json, Seed, app, save_figure, tell
+from cogmap.atomic import atomic_write
+from cogmap.commands.app import Json, Seed, app, tell
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_choice
 from cogmap.plots import plot_room, plot_sheet
@@ -52,17 +51,17 @@ def _arena(
     room = Arena.load(name)
     described = {
         "arena": room.name,
-        "walls": len(room.walls),
-        "boxes": len(room.boxes),
-        "pillars": len(room.pillars),
-        "blocks": len(room.blocks),
+        **{parts: len(getattr(room, parts)) for parts in ("walls", "boxes", "pillars", "blocks")},
         "odour_sources": len(room.sources),
         "free_area_m2": float(room.free_space(Disc().radius).area),
     }
     for path, plot in ((out, plot_room), (sheet, plot_sheet)):
         if path is not None:
-            check_absent(path)
-            save_figure(plot(room), path)
+            check_absent(path, CogmapError)
+            if not path.parent.is_dir():  # a mistyped folder is not made
+                raise CogmapError(f"cannot write {path}: No such file or directory")
+            with atomic_write(path) as fresh:
+                plot(room).savefig(fresh, format="png")
     tell(described, as_json=as_json)
 
 
@@ -128,7 +127,5 @@ def _explore(
         out=out,
         progress=sys.stderr.isatty(),
     )
-    tell(
-        {"recording": str(out), "views": len(recording), "odorants": recording.require("odours").shape[1]},
-        as_json=as_json,
-    )
+    odorants = recording.require("odours").shape[1]
+    tell({"recording": str(out), "views": len(recording), "odorants": odorants}, as_json=as_json)

@@ -1,7 +1,5 @@
 """Commands about how commands are run."""
 
-from __future__ import annotations
-
 import os
 from typing import Annotated, NoReturn
 

@@ -10,20 +10,7 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float
 
-from cogmap.cells import (
-    BinEdges,
-    PlaceFields,
-    RateMaps,
-    Tuning,
-    bin_edges,
-    heading_statistics,
-    place_coverage,
-    place_fields,
-    place_statistics,
-    position_errors,
-    rate_maps,
-    tuning_curves,
-)
+from cogmap import cells
 from cogmap.cells.measures.correlations import correlations
 
 
@@ -43,9 +30,9 @@ class GroundTruth(NamedTuple):
         return np.concatenate([self.train[:, :2], self.poses[:, :2]])
 
     @property
-    def edges(self) -> BinEdges:
+    def edges(self) -> cells.BinEdges:
         """Bins that all populations share."""
-        return bin_edges(np.concatenate([self.walked, self.reachable]))
+        return cells.bin_edges(np.concatenate([self.walked, self.reachable]))
 
     def measure(self, rates: Float[np.ndarray, "views cells"]) -> CellMetrics:
         """Measure cells on the fresh views; one without a compass, of rate NaN, is silent."""
@@ -55,7 +42,7 @@ class GroundTruth(NamedTuple):
         self, train: Float[np.ndarray, "train signals"], test: Float[np.ndarray, "views signals"]
     ) -> dict[str, float]:
         """Errors of the positions that 4-nearest-neighbour regression reads from signals."""
-        away = position_errors(train, self.train[:, :2], test, self.poses[:, :2])
+        away = cells.position_errors(train, self.train[:, :2], test, self.poses[:, :2])
         return {
             "position_median_m": float(np.median(away)),
             "position_p95_m": float(np.percentile(away, 95)),
@@ -71,33 +58,33 @@ class CellMetrics:
     truth: GroundTruth
 
     @cached_property
-    def maps(self) -> RateMaps:
+    def maps(self) -> cells.RateMaps:
         """Rate maps."""
         edges = self.truth.edges
         visited = edges.visited(self.truth.walked)
-        return rate_maps(self.rates, self.truth.poses[:, :2], edges=edges, visited=visited)
+        return cells.rate_maps(self.rates, self.truth.poses[:, :2], edges=edges, visited=visited)
 
     @cached_property
-    def fields(self) -> PlaceFields:
+    def fields(self) -> cells.PlaceFields:
         """Place fields."""
-        return place_fields(self.maps)
+        return cells.place_fields(self.maps)
 
     @cached_property
-    def tuning(self) -> Tuning:
+    def tuning(self) -> cells.Tuning:
         """Rate maps and tuning curves, to be drawn."""
-        return Tuning(self.maps, tuning_curves(self.rates, self.truth.poses[:, 2]))
+        return cells.Tuning(self.maps, cells.tuning_curves(self.rates, self.truth.poses[:, 2]))
 
     @cached_property
     def place(self) -> pd.DataFrame:
         """`place_statistics` of every cell."""
-        poses = self.truth.poses
-        return place_statistics(self.rates, poses[:, :2], poses[:, 2], maps=self.maps, fields=self.fields)
+        positions, headings = self.truth.poses[:, :2], self.truth.poses[:, 2]
+        return cells.place_statistics(self.rates, positions, headings, maps=self.maps, fields=self.fields)
 
     @cached_property
     def heading(self) -> pd.DataFrame:
         """`heading_statistics` of every cell."""
         poses = self.truth.poses
-        return heading_statistics(self.rates, poses[:, :2], poses[:, 2], maps=self.maps)
+        return cells.heading_statistics(self.rates, poses[:, :2], poses[:, 2], maps=self.maps)
 
     @property
     def table(self) -> pd.DataFrame:
@@ -106,21 +93,17 @@ class CellMetrics:
         table = self.place.drop(columns="passing").join(mine)
         return table.assign(place_passing=self.place["passing"], heading_passing=self.heading["passing"])
 
-    @property
-    def place_coverage(self) -> float:
-        """Reachable area inside some passing field."""
-        return self.coverage(self.truth.reachable)
-
     def coverage(self, places: Float[np.ndarray, "points 2"]) -> float:
         """Part of the area of these places (m) that is inside some passing field."""
-        return place_coverage(self.fields, self.place["passing"].to_numpy(), self.maps.edges.visited(places))
+        passing = self.place["passing"].to_numpy()
+        return cells.place_coverage(self.fields, passing, self.maps.edges.visited(places))
 
     @property
     def place_figures(self) -> dict[str, float]:
         """What it is worth as a population of place cells."""
         return {
             "place_cells_passing": float(self.place["passing"].mean()),
-            "place_coverage": self.place_coverage,
+            "place_coverage": self.coverage(self.truth.reachable),
             **_median(self.place, "in_field_direction_vector", "field_area_m2"),
         }
 
@@ -133,7 +116,7 @@ class CellMetrics:
         }
 
 
-def map_correlations(first: RateMaps, second: RateMaps) -> Float[np.ndarray, "cells"]:
+def map_correlations(first: cells.RateMaps, second: cells.RateMaps) -> Float[np.ndarray, "cells"]:
     """Correlate the maps of the same cells over the bins that both know; NaN where one is flat."""
     one, other = (maps.rates.reshape(len(maps.rates), -1) for maps in (first, second))
     return correlations(one, other)

@@ -59,40 +59,28 @@ def score(
     room = np.concatenate([positions, poses_train[:, :2]]) if reachable is None else reachable
     truth = GroundTruth(poses_train, poses, room)
     place, heading = cells or (CellMetrics(activity.place, truth), CellMetrics(activity.heading, truth))
-    return {
+    figures = {
         **truth.position(activity_train.odour, activity.odour),
         "place_cells_passing": float(place.place["passing"].mean()),
         "place_coverage": place.coverage(room),
-        **_score_heading(activity.phase, heading, activity_train.phase),
-        **_score_metric_map(activity.position, positions, (activity_train.position, poses_train[:, :2])),
     }
-
-
-def _score_heading(
-    phase: Float[np.ndarray, "views"], cells: CellMetrics, train: Float[np.ndarray, "train"]
-) -> dict[str, float]:
-    """Errors and cells; without a compass no cell passes, and there is no heading to be wrong."""
-    if np.isnan(phase).all():
-        return {"heading_cells_passing": 0.0}
-    turn = heading_errors(phase, cells.truth.poses[:, 2], fit_heading_frame(train, cells.truth.train[:, 2]))
-    turn_deg = np.rad2deg(np.abs(turn))
-    return {
-        "heading_median_deg": float(np.median(turn_deg)),
-        "heading_p95_deg": float(np.percentile(turn_deg, 95)),
-        "heading_resultant": float(abs(np.mean(np.exp(1j * turn)))),
-        "heading_cells_passing": float(cells.heading["passing"].mean()),
-    }
-
-
-def _score_metric_map(
-    mapped: Float[np.ndarray, "views 2"],
-    positions: Float[np.ndarray, "views 2"],
-    train: tuple[Float[np.ndarray, "train 2"], Float[np.ndarray, "train 2"]],
-) -> dict[str, float]:
-    if np.isnan(mapped).all():
-        return {}
-    laid = place_map(mapped, fit_map_frame(*train))
-    return {
-        "metric_map_r2": float(r2_score(positions, laid, multioutput="variance_weighted")),
-        "metric_map_median_m": float(np.median(np.linalg.norm(laid - positions, axis=1))),
-    }
+    if np.isnan(activity.phase).all():
+        # Without a compass no cell passes, and there is no heading to be wrong.
+        figures["heading_cells_passing"] = 0.0
+    else:
+        frame = fit_heading_frame(activity_train.phase, poses_train[:, 2])
+        turn = heading_errors(activity.phase, poses[:, 2], frame)
+        turn_deg = np.rad2deg(np.abs(turn))
+        figures |= {
+            "heading_median_deg": float(np.median(turn_deg)),
+            "heading_p95_deg": float(np.percentile(turn_deg, 95)),
+            "heading_resultant": float(abs(np.mean(np.exp(1j * turn)))),
+            "heading_cells_passing": float(heading.heading["passing"].mean()),
+        }
+    if not np.isnan(activity.position).all():
+        laid = place_map(activity.position, fit_map_frame(activity_train.position, poses_train[:, :2]))
+        figures |= {
+            "metric_map_r2": float(r2_score(positions, laid, multioutput="variance_weighted")),
+            "metric_map_median_m": float(np.median(np.linalg.norm(laid - positions, axis=1))),
+        }
+    return figures

@@ -5,13 +5,12 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from tempfile import mkdtemp
 from typing import Any
 
-import numpy as np
 from filelock import FileLock
-from jaxtyping import Float
 
 from arena import Arena, Camera, Disc, Motion, Nose, Recording, explore
 
@@ -65,30 +64,11 @@ class Conditions:
         if views is None:
             views = min(5000, self.views) if fresh else self.views
         seed = self.seed + FRESH_SEED * fresh
-
-        def walk(out: Path | None) -> Recording:
-            return explore(
-                self.room,
-                way,
-                eye,
-                body=body,
-                nose=self.nose,
-                views=views,
-                seed=seed,
-                out=out,
-                progress=self.progress,
-            )
-
+        walk = partial(explore, self.room, way, eye, body=body, nose=self.nose, views=views, seed=seed)
         if self.library is None:
-            return walk(None if self.scratch is None else Path(mkdtemp(dir=self.scratch)) / "walk.zarr")
+            out = None if self.scratch is None else Path(mkdtemp(dir=self.scratch)) / "walk.zarr"
+            return walk(out=out, progress=self.progress)
         described = repr((self.room, way, eye, body, self.nose, views, seed))
         shelf = self.library / hashlib.sha256(described.encode()).hexdigest()[:32]
         with FileLock(shelf.with_suffix(".lock")):
-            return walk(shelf.with_suffix(".zarr"))
-
-
-def poses_of(recording: Recording) -> Float[np.ndarray, "views 3"]:
-    """Ground truth, which `explore` always records."""
-    if recording.poses is None:
-        raise ValueError("a fresh recording has poses")
-    return recording.poses
+            return walk(out=shelf.with_suffix(".zarr"), progress=self.progress)

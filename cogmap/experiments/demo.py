@@ -7,15 +7,14 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
-from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
-from matplotlib.figure import Figure
 
 from arena import Arena
+from cogmap import plots
 from cogmap.atomic import result_folder
 from cogmap.cells import decode_positions, fit_heading_frame, fit_map_frame, heading_errors, place_map
 from cogmap.errors import CogmapError
@@ -26,34 +25,10 @@ from cogmap.experiments.provenance import write_provenance
 from cogmap.experiments.result import Result
 from cogmap.experiments.trial import Trial
 from cogmap.inputs import checked_count
-from cogmap.plots import (
-    plot_barcodes,
-    plot_compass,
-    plot_metric_map,
-    plot_position,
-    plot_rate_maps,
-    plot_room,
-    plot_tuning_curves,
-    plot_views,
-)
 from cogmap.shape.homology import Betti
 
 LANDMARKS = (400, 150)
 """On which loops and voids are measured."""
-
-
-@dataclass
-class Stopwatch:
-    """Seconds by stage."""
-
-    seconds: dict[str, float] = field(default_factory=dict)
-
-    @contextmanager
-    def __call__(self, stage: str) -> Iterator[None]:
-        """Time what is done inside."""
-        started = time.perf_counter()
-        yield
-        self.seconds[stage] = round(time.perf_counter() - started, 3)
 
 
 def demo(
@@ -98,8 +73,8 @@ def demo(
     """
     checked_count("views", views, 20)
     charts = usual_charts(views) if charts is None else charts
-    clock = Stopwatch()
-    drawings: dict[str, Figure] = {}
+    seconds: dict[str, float] = {}
+    clock = partial(_timed, seconds)
     with nullcontext() if out is None else result_folder(out) as folder:
         conditions = Conditions(room, views, seed, progress, map={"charts": charts})
         with clock("explore"):
@@ -111,12 +86,12 @@ def demo(
         with clock("perceive"):
             learnt, _ = trial.train, trial.test
         with clock("score"):
-            figures = trial.score | _nose_figures(trial)
+            figures = trial.score | trial.nose_figures
         with clock("homology"):
             bars = homologies(cmap.encode(trial.walk.views), learnt, landmarks=landmarks, seed=seed)
         if folder is not None:
             with clock("figures"):
-                drawings = _draw(trial, bars)
+                drawn = _draw(trial, bars)
                 cmap.save(folder / "map")
         metrics = {
             "arena": room.name,
@@ -130,33 +105,26 @@ def demo(
             **{f"betti_{name}": list(found.numbers) for name, found in bars.items()},
             "betti_votes": {name: list(found.votes) for name, found in bars.items()},
             "phase_eigenvalue": cmap.phase_eigenvalue_,
-            "seconds": clock.seconds,
+            "seconds": seconds,
             "learn_seconds": {stage: round(spent, 3) for stage, spent in cmap.seconds_.items()},
             "peak_memory_bytes": _peak_memory(),
         }
         if folder is not None:
-            captions = {name: _captions()[name] for name in drawings}
-            Result(metrics, figures=drawings, captions=captions).write(folder)
+            drawn.described(metrics).write(folder)
             overrides = {} if landmarks == LANDMARKS else {"landmarks": landmarks}
             write_provenance(folder, ("demo",), room, views=views, charts=charts, seed=seed, **overrides)
         return metrics
 
 
-def _smelt_positions(trial: Trial) -> Float[np.ndarray, "views 2"]:
-    """Positions (m) that the decoder of `score` reads from the raw nose."""
-    walk, fresh = (np.log(item.require("odours")) for item in (trial.walk, trial.fresh))
-    return decode_positions(walk, trial.truth.train[:, :2], fresh)
+@contextmanager
+def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
+    """Note how long what is done inside takes."""
+    started = time.perf_counter()
+    yield
+    seconds[stage] = round(time.perf_counter() - started, 3)
 
 
-def _nose_figures(trial: Trial) -> dict[str, float]:
-    away = np.linalg.norm(_smelt_positions(trial) - trial.truth.poses[:, :2], axis=1)
-    return {
-        "nose_position_median_m": float(np.median(away)),
-        "nose_position_p95_m": float(np.percentile(away, 95)),
-    }
-
-
-def _draw(trial: Trial, bars: dict[str, Betti]) -> dict[str, Figure]:
+def _draw(trial: Trial, bars: dict[str, Betti]) -> Result:
     """Draw what the score is of, the very maps and statistics that it has measured."""
     train, poses = trial.truth.train, trial.truth.poses
     positions, headings = poses[:, :2], poses[:, 2]
@@ -164,33 +132,28 @@ def _draw(trial: Trial, bars: dict[str, Betti]) -> dict[str, Figure]:
     frame = fit_heading_frame(learnt.phase, train[:, 2])
     aligned = headings + heading_errors(fresh.phase, headings, frame)
     sheet = np.linspace(0, len(train) - 1, 18).astype(int)
-    decoded = decode_positions(learnt.odour, train[:, :2], fresh.odour)
+    recalled = decode_positions(learnt.odour, train[:, :2], fresh.odour)
+    smelt = decode_positions(trial.smells[0], train[:, :2], trial.smells[1])
     drawings = {
-        "room": plot_room(trial.conditions.room, train),
-        "views": plot_views(np.asarray(trial.walk[sheet].views), train[sheet]),
-        "place_cells": plot_rate_maps(trial.place.maps, trial.place.place),
-        "heading_cells": plot_tuning_curves(trial.heading.tuning.curves, trial.heading.heading),
-        "compass": plot_compass(aligned, headings, positions),
-        "position": plot_position(decoded, positions, _smelt_positions(trial)),
-        "barcodes": plot_barcodes(bars),
+        "room": plots.plot_room(trial.conditions.room, train),
+        "views": plots.plot_views(np.asarray(trial.walk[sheet].views), train[sheet]),
+        "place_cells": plots.plot_rate_maps(trial.place.maps, trial.place.place),
+        "heading_cells": plots.plot_tuning_curves(trial.heading.tuning.curves, trial.heading.heading),
+        "compass": plots.plot_compass(aligned, headings, positions),
+        "position": plots.plot_position(recalled, positions, smelt),
+        "barcodes": plots.plot_barcodes(bars),
     }
     if not np.isnan(fresh.position).all():
         laid = place_map(fresh.position, fit_map_frame(learnt.position, train[:, :2]))
-        drawings["metric_map"] = plot_metric_map(laid, positions)
-    return drawings
-
-
-def _captions() -> dict[str, str]:
-    return {
-        "room": "The room from above, with the way through it",
-        "views": "Some of the views, with where they were taken",
+        drawings["metric_map"] = plots.plot_metric_map(laid, positions)
+    captions = {
         "place_cells": "Rate maps of place cells, rate against position",
         "heading_cells": "Tuning curves of head-direction cells, rate against heading",
         "compass": "Learnt against true heading, the same colour for the same direction",
         "position": "Recalled against true position",
-        "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
         "metric_map": "Where the map believes it is, laid over where it truly is",
     }
+    return Result({}, figures=drawings, captions=captions)
 
 
 def _peak_memory() -> int:

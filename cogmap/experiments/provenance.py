@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import platform
 import shlex
-from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from arena import Arena, gallery
+from arena.atomic import atomic_write
 from cogmap.portable import arithmetic
 
 PROVENANCE = "about.json"
@@ -43,10 +43,11 @@ def write_provenance(folder: Path, words: tuple[str, ...], room: Arena | None, *
     about = {
         "command": shlex.join(["cogmap", *command]),
         "different": {key: repr(value) for key, value in options.items() if key not in said},
-        "versions": versions(),
+        "versions": {"python": platform.python_version(), **{name: _version(name) for name in PACKAGES}},
         "arithmetic": arithmetic(),
     }
-    (folder / PROVENANCE).write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
+    with atomic_write(folder / PROVENANCE) as fresh:
+        fresh.write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
 
 
 def _where(folder: Path, room: Arena | None) -> tuple[str, ...]:
@@ -61,11 +62,6 @@ def _where(folder: Path, room: Arena | None) -> tuple[str, ...]:
 
 def _option(name: str, value: object) -> tuple[str, str]:
     return f"--{name}", str(value)
-
-
-def versions() -> Mapping[str, str]:
-    """Tell the versions of Python and of the packages that figures depend on."""
-    return {"python": platform.python_version(), **{package: _version(package) for package in PACKAGES}}
 
 
 def _version(package: str) -> str:

@@ -6,7 +6,6 @@ import inspect
 import sys
 from collections.abc import Callable
 from contextlib import nullcontext
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -90,8 +89,7 @@ def experiment(
 def experiments() -> dict[str, Experiment]:
     """Find all experiments: those of the packages here and of the plugins of `cogmap.experiments`."""
     # The decorator registers each when its file is imported.
-    for _ in modules_of("cogmap.experiments"):
-        pass
+    list(modules_of("cogmap.experiments"))
     return _registered
 
 
@@ -164,17 +162,8 @@ def run_experiment(
         nullcontext() if out is None else result_folder(out) as folder,
         TemporaryDirectory(prefix="cogmap-") as scratch,
     ):
-        found = chosen.run(
-            Conditions(
-                room,
-                views,
-                seed,
-                progress,
-                Path(scratch),
-                library,
-                extra_rooms=tuple(extra_rooms),
-                **overrides,
-            )
+        conditions = Conditions(
+            room, views, seed, progress, Path(scratch), library, extra_rooms=tuple(extra_rooms), **overrides
         )
         about = {
             "experiment": name,
@@ -182,7 +171,7 @@ def run_experiment(
             "views": views,
             "seed": seed,
         }
-        result = replace(found, metrics={**about, **found.metrics})
+        result = chosen.run(conditions).described(about)
         if folder is not None:
             result.write(folder)
             where = room if chosen.any_room else None

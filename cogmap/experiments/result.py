@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,16 @@ from cogmap.atomic import METRICS
 from cogmap.tables import write_table
 
 CAPTIONS = "captions.json"
+USUAL_CAPTIONS = {
+    "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
+    "cells": "What each cell tells of position and of heading, by population",
+    "distances": "Distance along the manifold against distance between poses",
+    "examples": "Six cells of each population: rate maps, and rate by heading",
+    "heading": "Heading read off the views against the true one",
+    "room": "The room from above, with the way through it",
+    "views": "Some of the views, with where they were taken",
+}
+"""By the name of a figure that several experiments draw."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +36,14 @@ class Result:
     """One row per view, pair or place; names of columns end in their unit."""
     figures: dict[str, Figure] = field(default_factory=dict)
     captions: dict[str, str] = field(default_factory=dict)
-    """What each figure shows, for those who read it and for those who cannot see it."""
+    """What each figure shows, for those who read it and for those who cannot see it; the usual ones may be
+    left out."""
+
+    def described(self, about: dict[str, Any]) -> Result:
+        """Put before the metrics what they are of, and give figures without a caption the usual one."""
+        known = USUAL_CAPTIONS | self.captions
+        captions = {name: known[name] for name in self.figures if name in known}
+        return replace(self, metrics={**about, **self.metrics}, captions=captions)
 
     def write(self, folder: Path) -> None:
         """Write metrics and captions as JSON, tables as Parquet and CSV, figures as PNG into a folder."""

@@ -6,15 +6,18 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import pandas as pd
 from jaxtyping import Float
+from matplotlib.figure import Figure
 
 from arena import Brownian, Camera, Disc, Motion, Recording
-from cogmap.evaluation.ground_truth import CellMetrics, GroundTruth
+from cogmap.evaluation.ground_truth import CellMetrics, GroundTruth, as_one_table
 from cogmap.evaluation.populations import grow_map, perceive, reachable_places
 from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments.conditions import Conditions
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import CognitiveMap
+from cogmap.plots import plot_cell_types, plot_examples
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,9 +49,9 @@ class Trial:
     @cached_property
     def truth(self) -> GroundTruth:
         """Where both walks really led."""
-        train = poses_of(self.walk)
+        train = self.walk.require("poses")
         reachable = train[:, :2] if self.reachable is None else self.reachable
-        return GroundTruth(train, poses_of(self.fresh), reachable)
+        return GroundTruth(train, self.fresh.require("poses"), reachable)
 
     @cached_property
     def cmap(self) -> CognitiveMap:
@@ -60,6 +63,11 @@ class Trial:
     def codes(self) -> tuple[Float[np.ndarray, "train components"], Float[np.ndarray, "views components"]]:
         """Sanger codes of the views of both walks."""
         return self.cmap.encode(self.walk.views), self.cmap.encode(self.fresh.views)
+
+    @cached_property
+    def smells(self) -> tuple[Float[np.ndarray, "train odorants"], Float[np.ndarray, "views odorants"]]:
+        """Log odour that the nose has smelt on both walks."""
+        return np.log(self.walk.require("odours")), np.log(self.fresh.require("odours"))
 
     @cached_property
     def train(self) -> Activity:
@@ -91,3 +99,25 @@ class Trial:
             reachable=self.reachable,
             cells=(self.place, self.heading),
         )
+
+    @property
+    def nose_figures(self) -> dict[str, float]:
+        """Errors of the positions that the decoder of `score` reads from the raw nose."""
+        return {f"nose_{key}": value for key, value in self.truth.position(*self.smells).items()}
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """What both populations are worth, and the score."""
+        return {**self.place.place_figures, **self.heading.heading_figures, **self.score}
+
+
+def show_cells(
+    cells: dict[str, CellMetrics], *, silent: bool = True
+) -> tuple[dict[str, pd.DataFrame], dict[str, Figure]]:
+    """Give tables and figures of a result: every cell of these populations, and six of each.
+
+    Unless told, a population that is `silent` has its place, an empty one, among the six.
+    """
+    table = as_one_table(cells)
+    examples = {name: found.tuning for name, found in cells.items() if silent or found.rates.any()}
+    return {"cells": table}, {"cells": plot_cell_types(table), "examples": plot_examples(examples)}

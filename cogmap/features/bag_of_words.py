@@ -1,7 +1,5 @@
 """Bags of visual words: a view as the set of words it shows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any, TypeVar
@@ -12,6 +10,7 @@ from jaxtyping import Float32, UInt8
 from joblib import Parallel, cpu_count, delayed
 from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.preprocessing import normalize
+from sklearn.utils import gen_batches
 from sklearn.utils.validation import check_is_fitted
 from tqdm import tqdm
 
@@ -91,7 +90,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
         self.workers = workers
         self.progress = progress
 
-    def fit(self, X: Any, y: object = None) -> BagOfWords:
+    def fit(self, X: Any, y: object = None) -> "BagOfWords":
         """Learn the words of views, and how rare each is."""
         self.fit_transform(X, y)
         return self
@@ -102,7 +101,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
         check_views(X)
         counts = checked_count("words", self.words), checked_count("colours", self.colours)
         seed = checked_count("seed", self.seed, 0)
-        blocks = _blocks(X)
+        blocks = list(gen_batches(X.shape[0], BLOCK))
         sample = blocks[:: -(-len(blocks) * BLOCK // SAMPLE)]
         rest = [block for block in blocks if block not in sample]
         with self._bar(X) as bar, one_thread():
@@ -125,18 +124,19 @@ class BagOfWords(TransformerMixin, BaseEstimator):
         check_is_fitted(self)
         check_views(X)
         with self._bar(X) as bar, one_thread():
-            shown = list(self._over(partial(_read, words=self._words), X, _blocks(X), bar))
+            blocks = list(gen_batches(X.shape[0], BLOCK))
+            shown = list(self._over(partial(_read, words=self._words), X, blocks, bar))
         return self._weigh(sp.vstack(shown, format="csr"))
 
     @property
     def _words(self) -> tuple[Rows, Rows]:
         return self.vocabulary_, self.palette_
 
-    def _bar(self, X: Any) -> tqdm[Any]:
+    def _bar(self, X: Any) -> "tqdm[Any]":
         return tqdm(total=X.shape[0], unit="view", disable=not self.progress)
 
     def _over(
-        self, work: Callable[[Images], Result], X: Any, blocks: list[slice], bar: tqdm[Any]
+        self, work: Callable[[Images], Result], X: Any, blocks: list[slice], bar: "tqdm[Any]"
     ) -> Iterator[Result]:
         """Work on blocks of views, in order."""
         # OpenCV and BLAS release the interpreter: threads save carrying views to other processes.
@@ -149,13 +149,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
     def _weigh(self, shown: sp.csr_array) -> sp.csr_array:
         rows = sp.csr_array((self.idf_[shown.indices], shown.indices, shown.indptr), shape=shown.shape)
         rows.eliminate_zeros()
-        scaled: sp.csr_array = normalize(rows, copy=False)
-        return scaled
-
-
-def _blocks(X: Any) -> list[slice]:
-    views = X.shape[0]
-    return [slice(first, min(first + BLOCK, views)) for first in range(0, views, BLOCK)]
+        return sp.csr_array(normalize(rows, copy=False))
 
 
 def _on(work: Callable[[Images], Result], X: Any, block: slice) -> Result:

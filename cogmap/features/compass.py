@@ -1,7 +1,5 @@
 """A visual compass: by how much the body turned between panoramas, and one north for all of them."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Complex64, Float, Float32, Int
@@ -11,6 +9,7 @@ from scipy.sparse.linalg import cg
 
 from arena.angles import wrap_angle
 from cogmap.features.strips import FREQUENCIES, Strips
+from cogmap.graph.neighbour_graph import edge_differences
 
 COLUMNS = 2 * (FREQUENCIES - 1)
 """At which a panorama is compared with another."""
@@ -118,9 +117,7 @@ def synchronise_headings(
             steps = np.asarray(signed[order[1:], before[order[1:]]])
             for view, step in zip(order[1:], steps, strict=True):
                 headings[view] = headings[before[view]] + step
-    index = np.arange(len(edges))
-    signs = np.repeat([1.0, -1.0], len(edges))
-    difference = sp.csr_array((signs, (np.tile(index, 2), edges.T.ravel())), (len(edges), views))
+    difference = edge_differences(columns, rows, views)
     trust = 1 / np.square(lengths + 0.1 * np.median(lengths))
     for _ in range(4):
         left = wrap_angle(turned - difference @ headings)

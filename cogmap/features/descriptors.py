@@ -1,7 +1,5 @@
 """Descriptors of spots of an image: SIFT around keypoints, colours of patches."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import cv2

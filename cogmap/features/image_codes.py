@@ -1,12 +1,11 @@
 """Image codes: views as small blurred pictures, which change smoothly from pose to pose."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import cv2
 import numpy as np
 from jaxtyping import Float32
+from sklearn.utils import gen_batches
 
 from cogmap.inputs import check_views
 from cogmap.threads import one_thread
@@ -26,17 +25,15 @@ def image_codes(views: Any) -> Float32[np.ndarray, "views features"]:
     CogmapError
         For views that are not uint8 images (views, height, width, 3).
     """
-    block = 256  # views read at a time
     check_views(views)
     codes = np.empty((views.shape[0], 3 * WIDTH * HEIGHT), np.float32)
     with one_thread():
-        for first in range(0, len(codes), block):
-            for row, view in enumerate(np.asarray(views[first : first + block]), start=first):
-                codes[row] = _code(view)
+        for block in gen_batches(len(codes), 256):
+            for code, view in zip(codes[block], np.asarray(views[block]), strict=True):
+                # Averaged to twice the size first: a blur of one pixel of the code costs little there.
+                fine = cv2.resize(
+                    view.astype(np.float32), (2 * WIDTH, 2 * HEIGHT), interpolation=cv2.INTER_AREA
+                )
+                blurred = cv2.GaussianBlur(fine, (0, 0), 1.0)
+                code[:] = cv2.resize(blurred, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA).ravel()
     return codes
-
-
-def _code(view: np.ndarray) -> Float32[np.ndarray, "features"]:
-    fine = cv2.resize(view.astype(np.float32), (2 * WIDTH, 2 * HEIGHT), interpolation=cv2.INTER_AREA)
-    blurred = cv2.GaussianBlur(fine, (0, 0), 1.0)
-    return np.asarray(cv2.resize(blurred, (WIDTH, HEIGHT), interpolation=cv2.INTER_AREA)).ravel()

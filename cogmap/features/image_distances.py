@@ -1,13 +1,12 @@
 """Distances between images: how different two views are, by pixels, words or the work of moving light."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float
 from scipy.spatial.distance import cdist
+from sklearn.utils import gen_batches
 
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_views
@@ -32,12 +31,11 @@ def pixel_distances(queries: Any, views: Any) -> Distances:
         For anything but images of one size.
     """
     _check_pair(queries, views)
-    ours = np.asarray(queries).reshape(queries.shape[0], -1).astype(np.float32)
-    found = []
-    for first in range(0, views.shape[0], BLOCK):
-        block = np.asarray(views[first : first + BLOCK])
-        found.append(cdist(ours, block.reshape(len(block), -1).astype(np.float32)))
-    return np.asarray(np.concatenate(found, axis=1) / np.sqrt(ours.shape[1]))
+    pixels = int(np.prod(queries.shape[1:]))
+    ours = np.asarray(queries).reshape(-1, pixels).astype(np.float32)
+    blocks = (np.asarray(views[block]) for block in gen_batches(views.shape[0], BLOCK))
+    found = [cdist(ours, block.reshape(-1, pixels).astype(np.float32)) for block in blocks]
+    return np.asarray(np.concatenate(found, axis=1) / np.sqrt(pixels))
 
 
 def cosine_distances(queries: sp.csr_array, views: sp.csr_array) -> Distances:
@@ -72,18 +70,16 @@ def earth_mover_distances(queries: Any, views: Any) -> Distances:
     _check_pair(queries, views)
     ours = _cumulative_light(np.asarray(queries))
     found = np.empty((queries.shape[0], views.shape[0]))
-    for first in range(0, views.shape[0], BLOCK):
-        theirs = _cumulative_light(np.asarray(views[first : first + BLOCK]))
+    for block in gen_batches(views.shape[0], BLOCK):
+        theirs = _cumulative_light(np.asarray(views[block]))
         for query, item in enumerate(ours):
             ahead = item - theirs
             ahead -= np.median(ahead, axis=1, keepdims=True)
-            found[query, first : first + BLOCK] = np.abs(ahead).mean(axis=(1, 2))
+            found[query, block] = np.abs(ahead).mean(axis=(1, 2))
     return 2 * np.pi * found
 
 
-def _cumulative_light(
-    strips: np.ndarray,
-) -> Float[np.ndarray, "views columns colours"]:
+def _cumulative_light(strips: np.ndarray) -> Float[np.ndarray, "views columns colours"]:
     # A black strip has no light to move: it counts as evenly lit.
     light = strips.sum(axis=1, dtype=np.float64)
     total = light.sum(axis=1, keepdims=True)

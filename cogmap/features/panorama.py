@@ -1,7 +1,5 @@
 """Panorama codes: points whose distance is that of the poses they were taken from, up to scale."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -55,7 +53,7 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         self.turning = turning
         self.neighbours = neighbours
 
-    def fit(self, X: Any, y: object = None) -> PanoramaCode:
+    def fit(self, X: Any, y: object = None) -> "PanoramaCode":
         """Learn components and north from panoramas, uint8 (views, height, width, 3)."""
         self.fit_transform(X, y)
         return self
@@ -77,7 +75,9 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
             found = self._axes.transform(self._train.turn_invariant).astype(np.float64)
             self._scale = 1 / np.sqrt(found.var(axis=0).sum())
             self._places = self._scale * found
-            self.headings_ = self._north(neighbours)
+            graph = neighbour_graph(self._places, neighbours)
+            edges = np.column_stack(sp.triu(graph, 1).nonzero())
+            self.headings_ = synchronise_headings(graph, edges, turns(self._train, edges))
         return self._features(self._places, self.headings_)
 
     def transform(self, X: Any) -> Float[np.ndarray, "views features"]:
@@ -92,11 +92,6 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
             label = self.headings_[pairs[:, 1]] + turns(test, pairs, self._train)
         headings = np.angle(np.exp(1j * label).reshape(nearest.shape).sum(axis=1))
         return self._features(places, headings)
-
-    def _north(self, neighbours: int) -> Float[np.ndarray, "views"]:
-        graph = neighbour_graph(self._places, neighbours)
-        edges = np.column_stack(sp.triu(graph, 1).nonzero())
-        return synchronise_headings(graph, edges, turns(self._train, edges))
 
     def _features(
         self, places: Float[np.ndarray, "views components"], headings: Float[np.ndarray, "views"]

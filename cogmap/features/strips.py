@@ -1,7 +1,5 @@
 """Panoramic strips as Fourier series along azimuth."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Vocabulary of visual words: typical descriptors, and which of them a descriptor resembles most."""
 
-from __future__ import annotations
-
 import cv2
 import numpy as np
 from jaxtyping import Float32, Int

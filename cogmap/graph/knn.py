@@ -1,7 +1,5 @@
 """Nearest neighbours (k-NN): which points are nearest, exactly, or by descent where that would be slow."""
 
-from __future__ import annotations
-
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
@@ -14,7 +12,7 @@ from threadpoolctl import threadpool_limits
 
 from cogmap.errors import CogmapError
 from cogmap.graph.points import Checked, Cloud, checked_cloud
-from cogmap.graph.top_k import offer_to_columns, offer_to_rows
+from cogmap.graph.top_k import offer
 from cogmap.inputs import check_choice, checked_count
 
 Metric = Literal["euclidean", "cosine"]
@@ -129,9 +127,9 @@ def _by_products(cloud: Checked, queries: Checked | None, neighbours: int) -> Ne
             here, there = (slice(block * BLOCK, (block + 1) * BLOCK) for block in (a, b))
             if queries is None and a == b:
                 np.fill_diagonal(cosines, 0)
-            offer_to_rows(cosines, best[here], names[here], there.start)
+            offer(cosines, best[here], names[here], there.start, axis=1)
             if queries is None and a < b:
-                offer_to_columns(cosines, best[there], names[there], here.start)
+                offer(cosines, best[there], names[there], here.start, axis=0)
     chords = np.sqrt(np.maximum(2 - 2 * best.astype(np.float64), 0))
     return Nearest(names, np.where(names < 0, np.inf, chords))
 

@@ -1,7 +1,5 @@
 """Neighbour graphs: who is next to whom in a cloud."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -129,6 +127,15 @@ def neighbourhood_means(graph: sp.csr_array) -> sp.csr_array:
     """Make the matrix that gives each point the mean of itself and those it is joined to."""
     joined = sp.csr_array(graph.astype(bool) + sp.eye_array(graph.shape[0]))
     return sp.csr_array(sp.diags_array(1 / joined.sum(axis=1)) @ joined)
+
+
+def edge_differences(
+    starts: Int[np.ndarray, "edges"], ends: Int[np.ndarray, "edges"], points: int
+) -> sp.csr_array:
+    """Make the matrix that takes a function of points to its change along each edge."""
+    edges = np.arange(len(starts))
+    signs = np.repeat([-1.0, 1.0], len(starts))
+    return sp.csr_array((signs, (np.tile(edges, 2), np.concatenate([starts, ends]))), (len(starts), points))
 
 
 def checked_graph(graph: sp.csr_array) -> sp.csr_array:

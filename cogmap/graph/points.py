@@ -1,7 +1,6 @@
 """Point clouds: one row a point, dense or sparse."""
 
-from __future__ import annotations
-
+from itertools import pairwise
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -51,8 +50,7 @@ def distinct(X: Checked) -> Distinct:
     """Find which points of a checked cloud repeat others."""
     if not sp.issparse(X):
         return Distinct(*np.unique(X, axis=0, return_index=True, return_inverse=True))
-    rows = np.empty(X.shape[0], dtype=object)
-    for row, (start, end) in enumerate(zip(X.indptr[:-1], X.indptr[1:], strict=True)):
-        rows[row] = X.indices[start:end].tobytes() + X.data[start:end].tobytes()
-    _, first, same = np.unique(rows, return_index=True, return_inverse=True)
+    rows = [X.indices[a:b].tobytes() + X.data[a:b].tobytes() for a, b in pairwise(X.indptr)]
+    # Objects, as fixed-length strings would lose the zero bytes at their ends.
+    _, first, same = np.unique(np.array(rows, object), return_index=True, return_inverse=True)
     return Distinct(X[first], first, same)

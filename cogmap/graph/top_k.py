@@ -6,37 +6,27 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True, nogil=True)
+# Compiled anew by each process, in half a second: numba's own cache wants a folder that can be written, and
+# that of `arena.kernels` a package that graphs may not know. Partitions by numpy take five times as long.
+@njit(nogil=True)
 @typing.no_type_check
-def offer_to_rows(scores: np.ndarray, best: np.ndarray, names: np.ndarray, first: int) -> None:
-    """Offer column b of `scores` (rows, columns), by the name of `first` + b, to the ranking of each row.
+def offer(scores: np.ndarray, best: np.ndarray, names: np.ndarray, first: int, axis: int) -> None:
+    """Offer each row of `scores`, or with `axis` 0 each column, to its ranking; the names count from `first`.
 
     A ranking is a row of `best`, scores in falling order, and of `names`. A candidate enters when it is
     better than the last, and then stands behind its equals.
     """
+    # Row by row for both axes: scores lie in memory in this order, and down a column each is a cache miss.
     for row in range(scores.shape[0]):
         for column in range(scores.shape[1]):
-            if scores[row, column] > best[row, -1]:
-                _enter(best[row], names[row], scores[row, column], first + column)
-
-
-@njit(cache=True, nogil=True)
-@typing.no_type_check
-def offer_to_columns(scores: np.ndarray, best: np.ndarray, names: np.ndarray, first: int) -> None:
-    """Offer row a of `scores` (rows, columns), by the name of `first` + a, to the ranking of each column."""
-    for row in range(scores.shape[0]):
-        for column in range(scores.shape[1]):
-            if scores[row, column] > best[column, -1]:
-                _enter(best[column], names[column], scores[row, column], first + row)
-
-
-@njit(cache=True, nogil=True)
-@typing.no_type_check
-def _enter(best: np.ndarray, names: np.ndarray, score: float, name: int) -> None:
-    rank = len(best) - 1
-    while rank > 0 and best[rank - 1] < score:
-        best[rank] = best[rank - 1]
-        names[rank] = names[rank - 1]
-        rank -= 1
-    best[rank] = score
-    names[rank] = name
+            ranking, name = (row, column) if axis else (column, row)
+            # Most candidates fail here, so that the ranking need not be a heap.
+            if scores[row, column] > best[ranking, -1]:
+                rank = best.shape[1] - 1
+                # Strictly less: of equals the one that came first stays in front.
+                while rank > 0 and best[ranking, rank - 1] < scores[row, column]:
+                    best[ranking, rank] = best[ranking, rank - 1]
+                    names[ranking, rank] = names[ranking, rank - 1]
+                    rank -= 1
+                best[ranking, rank] = scores[row, column]
+                names[ranking, rank] = first + name

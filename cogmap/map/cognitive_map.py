@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from copy import copy
-from inspect import signature
+from dataclasses import KW_ONLY, dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -28,12 +28,13 @@ from neurons.errors import NeuronsError
 from neurons.layers.retina import Retina
 from neurons.merging import forked, merge
 from neurons.network import Network
-from neurons.stages import chosen, joined
+from neurons.stages import StripStage, chosen, joined
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same map."""
 
 
+@dataclass(eq=False)
 class CognitiveMap:
     """A map of a place, learnt from sight and smell alone.
 
@@ -78,24 +79,14 @@ class CognitiveMap:
         For views or odours of the wrong shape, type or range, and for counts below 1.
     """
 
-    def __init__(
-        self,
-        charts: int = 3000,
-        components: int = 60,
-        *,
-        most_charts: int | None = None,
-        place_cells: int = 150,
-        heading_cells: int = 60,
-        epoch: int = 17_000,
-        seed: int = 0,
-    ) -> None:
-        self.charts = charts
-        self.components = components
-        self.most_charts = most_charts
-        self.place_cells = place_cells
-        self.heading_cells = heading_cells
-        self.epoch = epoch
-        self.seed = seed
+    charts: int = 3000
+    components: int = 60
+    _: KW_ONLY
+    most_charts: int | None = None
+    place_cells: int = 150
+    heading_cells: int = 60
+    epoch: int = 17_000
+    seed: int = 0
 
     def fit(self, views: Any, odours: ArrayLike | None, *, progress: bool = False) -> CognitiveMap:
         """Learn a map from scratch, as epochs of `partial_fit` over the views.
@@ -127,7 +118,7 @@ class CognitiveMap:
             for rows, strip in self._strips(views):
                 strips[rows] = strip
             self.seconds_["retina"] = time.perf_counter() - started
-            see, seen = None, strips
+            see, seen = StripStage.see, strips
             while int(network.views_seen) < network.epochs * count:
                 started = time.perf_counter()
                 network.advance_stage()
@@ -184,11 +175,11 @@ class CognitiveMap:
         CogmapError
             In a stage in which units compete for views, so that learning depends on their order.
         """
-        self._check_grown()
+        network = self._grown
         other: CognitiveMap = copy(self)
         other.seconds_ = {}
         with one_thread(), _at_the_edge():
-            other._network = forked(self._network)
+            other._network = forked(network)
         return other
 
     def merge(self, other: CognitiveMap) -> CognitiveMap:
@@ -214,10 +205,8 @@ class CognitiveMap:
         >>> away.partial_fit(views_there, odours_there, jump=True)
         >>> cmap.merge(away)  # as if it had seen both
         """
-        self._check_grown()
-        other._check_grown()
         with one_thread(), _at_the_edge():
-            merge(self._network, other._network)
+            merge(self._grown, other._grown)
         return self
 
     def perceive(self, views: Any = None, *, odours: ArrayLike | None = None) -> Activity:
@@ -228,12 +217,21 @@ class CognitiveMap:
         CogmapError
             When the map is not grown yet, or when given both or neither.
         """
-        self._check_grown()
+        network = self._grown
         if (views is None) == (odours is None):
             raise CogmapError("give either views, or odours for a look in the dark; not both or neither")
         with one_thread():
             if odours is not None:
-                return self._smell(torch.from_numpy(log_odours(odours, odorants=self.odorants_)))
+                smells = torch.from_numpy(log_odours(odours, odorants=self.odorants_))
+                # float32, as everything that a map says of views
+                blind = np.full((len(smells), 1 + self.heading_cells), np.nan, np.float32)
+                return Activity(
+                    place=network.place.tuning(smells).numpy(),
+                    heading=blind[:, 1:],
+                    phase=blind[:, 0],
+                    odour=smells.numpy(),
+                    position=network.metric_map(network.place, smells).position.numpy(),
+                )
             check_views(views, self.view_shape_)
             if not self.trusted_:
                 warnings.warn(
@@ -244,10 +242,10 @@ class CognitiveMap:
 
     def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
         """Give the principal components of views, the space of the view manifold, float32."""
-        self._check_grown()
+        network = self._grown
         check_views(views, self.view_shape_)
         with one_thread():
-            return torch.cat([self._network.code(strip) for _, strip in self._strips(views)]).numpy()
+            return torch.cat([network.code(strip) for _, strip in self._strips(views)]).numpy()
 
     @property
     def trusted_(self) -> bool:
@@ -257,25 +255,21 @@ class CognitiveMap:
     @property
     def reason_(self) -> str:
         """Why this map is not trusted; empty when it is."""
-        self._check_grown()
-        return self._network.diagnosis()
+        return self._grown.diagnosis()
 
     @property
     def metric_reason_(self) -> str:
         """Why this map tells no positions, whatever it tells of heading; empty when it does."""
-        self._check_grown()
-        return self._network.metric_diagnosis()
+        return self._grown.metric_diagnosis()
 
     @property
     def phase_eigenvalue_(self) -> float:
         """How well the charts agree on phase, 1 at best; NaN before they have tried."""
-        self._check_grown()
-        return float(self._network.agreement[1])
+        return float(self._grown.agreement[1])
 
     def state_dict(self) -> dict[str, Tensor]:
         """Give all that it has learnt, by the names it is saved under; as in PyTorch, not a copy."""
-        self._check_grown()
-        return self._network.state_dict()
+        return self._grown.state_dict()
 
     def save(self, path: str | Path) -> None:
         """Write the map to a new folder: `weights.safetensors` and `map.json`.
@@ -285,14 +279,15 @@ class CognitiveMap:
         CogmapError
             When something is at the path already, or it cannot be written.
         """
-        weights = self.state_dict()
+        network = self._grown
         learnt = {
             "view_shape": self.view_shape_,
             "odorants": self.odorants_,
-            "epoch": self._network.epoch,
-            "charts": len(self._network.charts),
+            "epoch": network.epoch,
+            "charts": len(network.charts),
         }
-        write_map(Path(path), weights, self._settings(), learnt)
+        settings = {field.name: getattr(self, field.name) for field in fields(self)}
+        write_map(Path(path), network.state_dict(), settings, learnt)
 
     @classmethod
     def load(cls, path: str | Path) -> CognitiveMap:
@@ -317,9 +312,6 @@ class CognitiveMap:
             raise CogmapError(f"{path} does not hold a whole map: {error}") from None
         return loaded
 
-    def _settings(self) -> dict[str, Any]:
-        return {name: getattr(self, name) for name in signature(CognitiveMap).parameters}
-
     def _begin(
         self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, charts: int | None = None
     ) -> None:
@@ -341,9 +333,12 @@ class CognitiveMap:
                 generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
             )
 
-    def _check_grown(self) -> None:
+    @property
+    def _grown(self) -> Network:
+        """The network, or a refusal where nothing is learnt yet."""
         if not hasattr(self, "_network"):
             raise CogmapError("this map has learnt nothing yet; call fit or partial_fit first")
+        return self._network
 
     def _strips(self, views: Any) -> Iterator[tuple[slice, Float[Tensor, "views features"]]]:
         """Pass views through the retina in fixed batches."""
@@ -360,16 +355,6 @@ class CognitiveMap:
         phase = mean_angle(angle, torch.ones_like(angle))
         place, heading = (cells.afferents(recalled.excited) for cells in (network.place, network.heading))
         return place, heading, phase, recalled.odour, position
-
-    def _smell(self, odours: Float[Tensor, "views odorants"]) -> Activity:
-        blind = np.full(len(odours), np.nan, np.float32)
-        return Activity(
-            place=self._network.place.tuning(odours).numpy(),
-            heading=np.repeat(blind[:, None], self.heading_cells, axis=1),
-            phase=blind,
-            odour=odours.numpy(),
-            position=self._network.metric_map(self._network.place, odours).position.numpy(),
-        )
 
 
 @contextmanager

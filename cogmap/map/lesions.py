@@ -1,7 +1,5 @@
 """Lesions: the state of a map by the names it is saved under, and copies with some of it changed."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from copy import deepcopy
 
@@ -31,9 +29,8 @@ def with_state(cmap: CognitiveMap, changed: Mapping[str, Tensor]) -> CognitiveMa
 def with_blank_afferents(cmap: CognitiveMap) -> CognitiveMap:
     """Copy a map whose cells hear nothing yet: their afferents from sight are as before any view."""
     learnt = cmap.state_dict()
-    return with_state(
-        cmap, {name: torch.zeros_like(learnt[name]) for name in learnt if ".afferents." in name}
-    )
+    blank = {name: torch.zeros_like(learnt[name]) for name in learnt if ".afferents." in name}
+    return with_state(cmap, blank)
 
 
 def lesioned(cmap: CognitiveMap, charts: Int[np.ndarray, "silent"]) -> CognitiveMap:

@@ -13,6 +13,7 @@ from cogmap.atomic import atomic_write
 from cogmap.errors import CogmapError
 
 VERSION = 3
+WEIGHTS, SETTINGS = "weights.safetensors", "map.json"
 
 
 def write_map(
@@ -22,17 +23,15 @@ def write_map(
     described = {"version": VERSION, "settings": dict(settings), "learnt": dict(learnt)}
     with atomic_write(path, overwrite=False) as folder:
         folder.mkdir()
-        tensors, settings_file = _files(folder)
-        save_file({name: weight.contiguous() for name, weight in weights.items()}, tensors)
-        settings_file.write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+        save_file({name: weight.contiguous() for name, weight in weights.items()}, folder / WEIGHTS)
+        (folder / SETTINGS).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 
 
 def read_map(path: Path) -> tuple[dict[str, Tensor], dict[str, Any], dict[str, Any]]:
     """Read weights, settings and what was learnt about the input."""
     try:
-        tensors, settings_file = _files(path)
-        described = json.loads(settings_file.read_text(encoding="utf-8"))
-        weights = load_file(tensors)
+        described = json.loads((path / SETTINGS).read_text(encoding="utf-8"))
+        weights = load_file(path / WEIGHTS)
     except OSError as error:
         raise CogmapError(f"cannot read a map at {path}: {error.strerror or error}") from None
     except (ValueError, SafetensorError) as error:
@@ -46,8 +45,4 @@ def read_map(path: Path) -> tuple[dict[str, Tensor], dict[str, Any], dict[str, A
     try:
         return weights, described["settings"], described["learnt"]
     except KeyError as error:
-        raise CogmapError(f"{path} is damaged: {settings_file.name} lacks {error}") from None
-
-
-def _files(folder: Path) -> tuple[Path, Path]:
-    return folder / "weights.safetensors", folder / "map.json"
+        raise CogmapError(f"{path} is damaged: {SETTINGS} lacks {error}") from None

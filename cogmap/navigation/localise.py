@@ -1,12 +1,12 @@
 """Localisation: where a view was taken, in terms of remembered views."""
 
-from __future__ import annotations
-
+from dataclasses import KW_ONLY, dataclass
 from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float, Int
+from sklearn.utils import gen_batches
 
 from cogmap.errors import CogmapError
 from cogmap.graph.knn import Metric, nearest_points
@@ -24,6 +24,7 @@ class Location(NamedTuple):
     """They sum to one, and may be negative; 0 where there is no view, NaN where there is none at all."""
 
 
+@dataclass(eq=False)
 class Localiser:
     r"""Places views among remembered ones by affine weights; whatever these say of themselves interpolates.
 
@@ -59,20 +60,12 @@ class Localiser:
     Roweis & Saul (2000), Nonlinear dimensionality reduction by locally linear embedding: affine weights.
     """
 
-    def __init__(
-        self,
-        features: Cloud,
-        *,
-        codes: Float[np.ndarray, "views codes"] | None = None,
-        neighbours: int = 60,
-        ridge: float = 1e-4,
-        metric: Metric = "cosine",
-    ) -> None:
-        self.features = features
-        self.codes = codes
-        self.neighbours = neighbours
-        self.ridge = ridge
-        self.metric = metric
+    features: Cloud
+    _: KW_ONLY
+    codes: Float[np.ndarray, "views codes"] | None = None
+    neighbours: int = 60
+    ridge: float = 1e-4
+    metric: Metric = "cosine"
 
     def locate(self, query: Cloud, *, codes: Float[np.ndarray, "queries codes"] | None = None) -> Location:
         """Place views given by their features, (queries, features), and codes if the remembered have any."""
@@ -91,8 +84,7 @@ class Localiser:
         indices = nearest_points(self.features, count, queries=query, metric=self.metric).indices
         weights = np.empty(indices.shape)
         with one_thread():
-            for first in range(0, len(indices), 128):
-                block = slice(first, first + 128)
+            for block in gen_batches(len(indices), 128):
                 weights[block] = self._weigh(train, indices[block], test[block])
         return Location(indices, weights)
 
@@ -125,5 +117,4 @@ def _codes(codes: Cloud, views: int) -> Float[np.ndarray, "views codes"]:
     checked = checked_cloud(codes)
     if checked.shape[0] != views:
         raise CogmapError(f"there are {checked.shape[0]} codes but {views} views; give one code per view")
-    dense: np.ndarray = checked.toarray() if sp.issparse(checked) else checked
-    return dense
+    return np.asarray(checked.toarray() if sp.issparse(checked) else checked)

@@ -1,7 +1,6 @@
 """The visual roadmap: a way from one view to another through remembered views."""
 
-from __future__ import annotations
-
+from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +15,7 @@ from cogmap.graph.neighbour_graph import Components, components, neighbour_graph
 from cogmap.graph.points import Checked, Cloud, checked_cloud
 
 
+@dataclass(eq=False)
 class VisualRoadmap:
     r"""Plans routes as sequences of remembered views: shortest paths in their neighbour graph.
 
@@ -52,20 +52,12 @@ class VisualRoadmap:
     roadmaps for path planning in high-dimensional configuration spaces.
     """
 
-    def __init__(
-        self,
-        features: Cloud,
-        *,
-        neighbours: int = 45,
-        power: float = 1.25,
-        metric: Metric = "euclidean",
-        one_sided: int = 5,
-    ) -> None:
-        self.features = features
-        self.neighbours = neighbours
-        self.power = power
-        self.metric = metric
-        self.one_sided = one_sided
+    features: Cloud
+    _: KW_ONLY
+    neighbours: int = 45
+    power: float = 1.25
+    metric: Metric = "euclidean"
+    one_sided: int = 5
 
     def plan(self, view_a: Cloud, view_b: Cloud) -> Int[np.ndarray, "steps"]:
         """Give the indices of the views on the way from view a to view b, given by their features.
@@ -81,9 +73,8 @@ class VisualRoadmap:
             When no chain of remembered views joins them.
         """
         start, goal = self.nearest(view_a), self.nearest(view_b)
-        labels = self.pieces.labels
+        labels, sizes = self.pieces.labels, self.pieces.sizes
         if labels[start] != labels[goal]:
-            sizes = self.pieces.sizes
             raise CogmapError(
                 f"no way leads from view {start} to view {goal}: they are in separate pieces of the "
                 f"neighbour graph, of {sizes[labels[start]]} and {sizes[labels[goal]]} views; "

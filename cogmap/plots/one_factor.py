@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cogmap.errors import CogmapError
-from cogmap.plots.style import BAD, GOOD, INK, SOFT, new_figure, tidy, tidy_legend
+from cogmap.plots.style import BAD, GOOD, INK, SOFT, new_panels, tidy, tidy_legend
 
 LINES = {
     "position error (cm), median": {
@@ -49,8 +49,7 @@ def plot_cases(cases: pd.DataFrame, labels: Mapping[str, str], *, doubling: bool
     """
     if len(labels) != 2:
         raise CogmapError(f"{len(labels)} columns are labelled; two are varied")
-    figure = new_figure(10.5, 5.6)
-    panels = figure.subplots(2, len(LINES), squeeze=False)
+    figure, panels = new_panels(10.5, 5.6, 2, len(LINES))
     first, second = labels
     for row, along, other in zip(panels, (first, second), (second, first), strict=True):
         usual = cases[other].mode()[0]

@@ -12,11 +12,18 @@ from typing import Any, Literal, cast
 import numpy as np
 import pandas as pd
 from jaxtyping import Float
+from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import QuadMesh
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, Locator, NullLocator, StrMethodFormatter
+from numpy.typing import ArrayLike
+
+from cogmap.cells.rates.bins import BinEdges
 
 SMALL, TINY = 9.0, 7.0
 """Sizes of text in points: labels and titles; ticks and what stands in a small panel."""
@@ -75,9 +82,9 @@ def direction_scale() -> ScalarMappable:
     return ScalarMappable(Normalize(-180, 180), HUES)
 
 
-def heading_bar(axes: Axes, *, pad: float = 0.02) -> None:
+def heading_bar(axes: Axes, label: str = "heading (°)", *, pad: float = 0.02) -> None:
     """Put a colour bar of headings in degrees to the right of axes."""
-    colour_bar(axes, direction_scale(), "heading (°)", pad=pad).set_ticks(QUARTERS.tolist())
+    colour_bar(axes, direction_scale(), label, pad=pad).set_ticks(QUARTERS.tolist())
 
 
 def new_figure(width: float, height: float) -> Figure:
@@ -85,22 +92,51 @@ def new_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), dpi=110, facecolor="white", layout="constrained")
 
 
-def tidy(axes: Axes, *, x: str = "", y: str = "", title: str = "") -> None:
-    """Label axes and set them in small, dark type; without the frame's upper and right side."""
+def new_panels(
+    width: float, height: float, rows: int = 1, columns: int = 1, **options: Any
+) -> tuple[Figure, Any]:
+    """Make a figure as `new_figure` does, and its panels as `Figure.subplots` does, with the same options."""
+    figure = new_figure(width, height)
+    return figure, figure.subplots(rows, columns, **options)
+
+
+def tidy(axes: Axes, *, x: str = "", y: str = "", title: str = "", size: float = SMALL) -> None:
+    """Label axes, their title in this size, in dark type; without the frame's upper and right side."""
     axes.set_facecolor("white")
     axes.set_xlabel(x, fontsize=SMALL, color=INK)
     axes.set_ylabel(y, fontsize=SMALL, color=INK)
-    axes.set_title(title, fontsize=SMALL, color=INK)
+    axes.set_title(title, fontsize=size, color=INK)
     axes.tick_params(labelsize=TINY, colors=INK, length=2.5, width=0.6)
     for spine in axes.spines.values():
         spine.set(color=INK, linewidth=0.6)
     axes.spines[["top", "right"]].set_visible(False)
 
 
+def plain_ticks(axis: Axis, ticks: Locator | Sequence[float]) -> None:
+    """Write numbers without powers of ten at these ticks alone, also along a logarithmic axis."""
+    axis.set_major_locator(ticks if isinstance(ticks, Locator) else FixedLocator(ticks))
+    axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    axis.set_minor_locator(NullLocator())
+
+
+def draw_headings(
+    axes: Axes, headings: Float[np.ndarray, " angles"], values: ArrayLike, *, size: float, margin: float = 5.0
+) -> None:
+    """Draw values over headings (rad) as dots of their cyclic colours, along an axis in degrees."""
+    axes.scatter(np.rad2deg(headings), values, s=size, c=direction_colours(headings), linewidths=0)
+    axes.set(xlim=(-180 - margin, 180 + margin), xticks=QUARTERS)
+
+
 def title_sheet(figure: Figure, drawn: str, passing: pd.Series) -> None:
     """Head a sheet of cells: what is drawn, and how many of all cells pass."""
     note = "" if passing.all() else " (red: does not)"
     figure.suptitle(f"{drawn}; {passing.sum()} of {len(passing)} pass{note}", fontsize=SMALL, color=INK)
+
+
+def title_cell(axes: Axes, x: float, y: float, said: str, *, passing: bool) -> None:
+    """Write above a cell of a sheet, in red when it does not pass."""
+    colour = INK if passing else BAD
+    axes.text(x, y, said, ha="center", va="bottom", fontsize=TINY, color=colour)
 
 
 def tidy_room(axes: Axes, *, title: str = "") -> None:
@@ -119,6 +155,20 @@ def tidy_legend(
     legend = axes.legend(title=title, fontsize=TINY, title_fontsize=TINY, labelcolor=INK, **options)
     legend.get_title().set_color(INK)
     legend.get_frame().set(facecolor="white", edgecolor="none", alpha=0.85)
+
+
+def sheet_legend(figure: Figure, columns: int, **options: Any) -> None:
+    """Explain below all axes of a figure what they share; options are those of `Figure.legend`."""
+    look: dict[str, Any] = {"fontsize": SMALL, "labelcolor": INK, "frameon": False}
+    figure.legend(loc="outside lower center", ncols=columns, **look, **options)
+
+
+def draw_bins(
+    axes: Axes, edges: BinEdges, values: Float[np.ndarray, "ny nx"], colours: str, *, low: float, high: float
+) -> QuadMesh:
+    """Draw a value per bin of a room in one of matplotlib's colour maps, grey where it is NaN."""
+    grey_without = colormaps[colours].with_extremes(bad=ABSENT)
+    return axes.pcolormesh(*edges, values, cmap=grey_without, vmin=low, vmax=high)
 
 
 def colour_bar(

@@ -11,11 +11,11 @@ import pandas as pd
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from matplotlib.ticker import LogLocator, NullLocator
 from pandas.api.types import is_bool_dtype, is_numeric_dtype
 from scipy.stats import t
 
-from cogmap.plots.style import BAD, GOOD, INK, SMALL, TINY, new_figure, tidy, tidy_legend
+from cogmap.plots.style import BAD, GOOD, INK, SMALL, TINY, new_panels, plain_ticks, tidy, tidy_legend
 
 MOST_LINES = 6
 """A second parameter with at most so many values gives each a line of its own."""
@@ -113,8 +113,7 @@ def plot_trend(
     called = labels or {}
     columns = min(3, len(varied))
     rows = math.ceil(len(varied) / columns)
-    figure = new_figure(4.0 * columns, 3.1 * rows)
-    panels = figure.subplots(rows, columns, squeeze=False, sharey=True)
+    figure, panels = new_panels(4.0 * columns, 3.1 * rows, rows, columns, squeeze=False, sharey=True)
     for axes in panels.flat[len(varied) :]:
         axes.set_axis_off()
     for name, axes in zip(varied, panels.flat, strict=False):
@@ -122,14 +121,13 @@ def plot_trend(
         tidy(axes, x=_called(name, called), y=_called(statistic, called) if first else "")
         axis = _axis(table, name, is_log=name in logarithmic)
         other = _second(table, name, varied) if joined else None
-        if not joined:
-            _draw(axes, summarise(table, statistic, list(varied)), axis, line="none", label="", mark=0)
-        elif other is None:
-            _draw(axes, summarise(table, statistic, [name]), axis, line="-", label="", mark=0)
+        line = "-" if joined and not axis.is_category else "none"
+        if other is None:
+            _draw(axes, summarise(table, statistic, [name] if joined else varied), axis, line=line)
         else:
             every = summarise(table, statistic, [name, other])
             for mark, (value, batch) in enumerate(every.groupby(other, sort=True)):
-                _draw(axes, batch, axis, line="-", label=_short(value), mark=mark)
+                _draw(axes, batch, axis, line=line, label=_short(value), mark=mark)
             if len(every):
                 tidy_legend(axes, title=_called(other, called), loc="beside")
         _draw_doubted(axes, table, statistic, axis)
@@ -154,29 +152,19 @@ def _axis(table: pd.DataFrame, name: str, *, is_log: bool) -> _Axis:
 
 def _second(table: pd.DataFrame, name: str, varied: Sequence[str]) -> str | None:
     """Choose the other parameter whose values have lines of their own."""
-    few = {other: table[other].nunique() for other in varied if other != name}
-    few = {other: count for other, count in few.items() if 1 < count <= MOST_LINES}
-    return min(few, key=lambda other: few[other]) if few else None
+    few = [other for other in varied if other != name and 1 < table[other].nunique() <= MOST_LINES]
+    return min(few, key=lambda other: table[other].nunique(), default=None)
 
 
-def _draw(axes: Axes, means: pd.DataFrame, axis: _Axis, *, line: str, label: str, mark: int) -> None:
+def _draw(axes: Axes, means: pd.DataFrame, axis: _Axis, *, line: str, label: str = "", mark: int = 0) -> None:
     markers = "osD^vP"
     colour = colormaps["tab10"](mark) if label else GOOD
     # The dots of two lines at the same category stand a little apart.
     aside = 0.07 * mark if axis.is_category else 0.0
-    axes.errorbar(
-        [axis.at(value) + aside for value in means[axis.name]],
-        means["mean"],
-        means["half"].fillna(0.0),
-        fmt=markers[mark % len(markers)],
-        linestyle="none" if axis.is_category else line,
-        color=colour,
-        markersize=4,
-        linewidth=1.2,
-        elinewidth=0.9,
-        capsize=2,
-        label=label,
-    )
+    xs = [axis.at(value) + aside for value in means[axis.name]]
+    half, marker = means["half"].fillna(0.0), markers[mark % len(markers)]
+    look: dict[str, Any] = {"markersize": 4, "linewidth": 1.2, "elinewidth": 0.9, "capsize": 2}
+    axes.errorbar(xs, means["mean"], half, fmt=marker, linestyle=line, color=colour, label=label, **look)
 
 
 def _draw_doubted(axes: Axes, table: pd.DataFrame, statistic: str, axis: _Axis) -> None:
@@ -195,9 +183,7 @@ def _scale(axes: Axes, axis: _Axis) -> None:
         axes.set_xticks([float(value) for value in axis.levels], [_short(value) for value in axis.levels])
         axes.xaxis.set_minor_locator(NullLocator())
     elif axis.is_log:
-        axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axes.xaxis.set_minor_locator(NullLocator())
+        plain_ticks(axes.xaxis, LogLocator(subs=(1, 2, 5)))
 
 
 def _called(name: str, labels: Mapping[str, str]) -> str:

@@ -3,26 +3,24 @@
 `python -m cogmap.shape.betti_thresholds` makes the table of thresholds anew.
 """
 
-from __future__ import annotations
-
-import argparse
 import json
 from collections.abc import Sequence
 from functools import cache
-from importlib import resources
 from pathlib import Path
 from typing import Literal
 
+import cyclopts
 import numpy as np
 from jaxtyping import Float
 from scipy.interpolate import RegularGridInterpolator
 from tqdm import tqdm
 
+from cogmap.atomic import atomic_write
 from cogmap.shape.rips import euclidean, farthest_points, geodesic, ratios, rips_bars
 
 Metric = Literal["geodesic", "euclidean"]
 
-TABLE = "betti_thresholds.json"
+TABLE = Path(__file__).with_name("betti_thresholds.json")
 LANDMARKS = {0: (25, 50, 100, 200, 400), 1: (25, 50, 100, 200, 400), 2: (25, 50, 100, 200)}
 CROWDS = (1, 2, 4, 8, 16, 32)
 """Points per landmark; beyond the last the thresholds hardly fall."""
@@ -108,21 +106,15 @@ def simulate_table(clouds: int = CLOUDS) -> dict[str, dict[str, list[list[float]
     totals = sorted({count * crowd for count in LANDMARKS[1] for crowd in CROWDS})
     with tqdm(total=len(dimensions) * len(totals), desc="null", unit="size") as progress:
         for metric, wanted in dimensions.items():
-            table = {d: np.empty((len(LANDMARKS[d]), len(CROWDS))) for d in wanted}
+            found: dict[tuple[int, int, int], float] = {}
             for points in totals:
-                cells = [
-                    (d, row, column)
-                    for d in wanted
-                    for row, count in enumerate(LANDMARKS[d])
-                    for column, crowd in enumerate(CROWDS)
-                    if count * crowd == points
-                ]
-                sizes = [(d, LANDMARKS[d][row]) for d, row, _ in cells]
+                sizes = [(d, count) for d in wanted for count in LANDMARKS[d] if points / count in CROWDS]
                 worst = _worst_quantiles(metric, points, sizes, clouds, NEIGHBOURS)
-                for (d, row, column), value in zip(cells, worst, strict=True):
-                    table[d][row, column] = value
+                found |= {(d, count, points): value for (d, count), value in zip(sizes, worst, strict=True)}
                 progress.update()
-            tables[metric] = {str(d): np.round(values, 4).tolist() for d, values in table.items()}
+            for d in wanted:
+                values = [[found[d, count, count * crowd] for crowd in CROWDS] for count in LANDMARKS[d]]
+                tables.setdefault(metric, {})[str(d)] = np.round(values, 4).tolist()
     return tables
 
 
@@ -148,24 +140,18 @@ def _simulated(metric: Metric, dimension: int, points: int, landmarks: int, neig
 
 @cache
 def _table() -> dict[str, dict[int, Float[np.ndarray, "landmarks crowds"]]]:
-    text = resources.files("cogmap.shape").joinpath(TABLE).read_text(encoding="utf-8")
     return {
         metric: {int(dimension): np.array(rows) for dimension, rows in tables.items()}
-        for metric, tables in json.loads(text).items()
+        for metric, tables in json.loads(TABLE.read_text(encoding="utf-8")).items()
     }
 
 
-def main() -> None:
-    """Write the table."""
-    parser = argparse.ArgumentParser(
-        prog="python -m cogmap.shape.betti_thresholds", description=simulate_table.__doc__
-    )
-    parser.add_argument("--out", type=Path, default=Path(__file__).with_name(TABLE))
-    parser.add_argument("--clouds", type=int, default=CLOUDS, help="cubes per dimension and size")
-    arguments = parser.parse_args()
-    text = json.dumps(simulate_table(arguments.clouds), indent=1)
-    arguments.out.write_text(text + "\n", encoding="utf-8")
+def main(out: Path = TABLE, clouds: int = CLOUDS) -> None:
+    """Simulate the table, from so many cubes per dimension and size, and write it."""
+    text = json.dumps(simulate_table(clouds), indent=1)
+    with atomic_write(out) as fresh:
+        fresh.write_text(text + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    cyclopts.run(main)

@@ -1,7 +1,5 @@
 """The circular coordinate: the angle along the loop of a cloud."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +10,7 @@ from scipy.sparse.csgraph import dijkstra
 from scipy.sparse.linalg import cg, lsqr
 
 from cogmap.errors import CogmapError
-from cogmap.graph.neighbour_graph import checked_graph, components
+from cogmap.graph.neighbour_graph import checked_graph, components, edge_differences
 from cogmap.shape.rips import farthest_points, ratios
 from cogmap.threads import one_thread
 
@@ -104,9 +102,8 @@ def _smooth_cocycle(
     integers[start, end] = np.where(residue > PRIME // 2, residue - PRIME, residue)
     integers -= integers.T
     starts, ends = np.nonzero(np.triu(distances <= scale, 1))
-    difference = _differences(starts, ends, len(distances))
-    solution: np.ndarray = lsqr(difference, -integers[starts, ends], atol=1e-10, btol=1e-10)[0]
-    return 2 * np.pi * solution
+    difference = edge_differences(starts, ends, len(distances))
+    return np.asarray(2 * np.pi * lsqr(difference, -integers[starts, ends], atol=1e-10, btol=1e-10)[0])
 
 
 def _spread_out(
@@ -126,17 +123,6 @@ def _harmonic(graph: sp.csr_array, phase: Float[np.ndarray, "points"]) -> Float[
     starts, ends = sp.triu(graph, 1).nonzero()
     step = phase[ends] - phase[starts]
     turns = np.round(step / (2 * np.pi))
-    difference = _differences(starts, ends, len(phase))
-    smooth: np.ndarray = cg(
-        difference.T @ difference, difference.T @ (2 * np.pi * turns), x0=phase, rtol=1e-6
-    )[0]
-    return smooth
-
-
-def _differences(
-    starts: Int[np.ndarray, "edges"], ends: Int[np.ndarray, "edges"], points: int
-) -> sp.csr_array:
-    """Make the matrix that takes a function of points to its change along each edge."""
-    edges = np.arange(len(starts))
-    signs = np.repeat([-1.0, 1.0], len(starts))
-    return sp.csr_array((signs, (np.tile(edges, 2), np.concatenate([starts, ends]))), (len(starts), points))
+    difference = edge_differences(starts, ends, len(phase))
+    pull = difference.T @ (2 * np.pi * turns)
+    return np.asarray(cg(difference.T @ difference, pull, x0=phase, rtol=1e-6)[0])

@@ -1,7 +1,5 @@
 """The height coordinate of a cylinder, which its loop leaves over."""
 
-from __future__ import annotations
-
 import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float
@@ -76,8 +74,7 @@ def _left_over(
     turns = np.arange(1, 4) * phase[:, None]
     waves = np.column_stack([np.ones(len(phase)), np.cos(turns), np.sin(turns)])
     rest = embedding - waves @ np.linalg.lstsq(waves, embedding, rcond=None)[0]
-    along: np.ndarray = rest @ np.linalg.svd(rest.T @ rest)[0][:, 0]
-    return along
+    return np.asarray(rest @ np.linalg.svd(rest.T @ rest)[0][:, 0])
 
 
 def _rank_in_slices(

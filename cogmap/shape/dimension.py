@@ -1,7 +1,5 @@
 """Intrinsic dimension: how many degrees of freedom a cloud has."""
 
-from __future__ import annotations
-
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial import KDTree

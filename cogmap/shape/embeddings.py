@@ -1,7 +1,5 @@
 """Embeddings, ways of giving a cloud few coordinates, with one face: scikit-learn's."""
 
-from __future__ import annotations
-
 from typing import Literal, Protocol, get_args, runtime_checkable
 
 import numpy as np

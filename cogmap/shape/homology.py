@@ -1,7 +1,5 @@
 """Betti numbers of a cloud: how many pieces, loops and voids it has, and by how much."""
 
-from __future__ import annotations
-
 from collections import Counter
 from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
@@ -15,18 +13,7 @@ from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import checked_graph
 from cogmap.graph.points import checked_cloud
 from cogmap.inputs import check_choice
-from cogmap.shape import betti_thresholds
-from cogmap.shape.rips import (
-    Bars,
-    DistancesFrom,
-    Landmarks,
-    along,
-    euclidean,
-    farthest_points,
-    geodesic,
-    ratios,
-    rips_bars,
-)
+from cogmap.shape import betti_thresholds, rips
 
 Metric = Literal["geodesic", "euclidean", "precomputed"]
 
@@ -43,7 +30,7 @@ class Betti:
 
     numbers: tuple[int, ...]
     """Pieces, loops, voids: the majority over the draws."""
-    bars: tuple[Bars, ...]
+    bars: tuple[rips.Bars, ...]
     """(birth, death) in the unit of the metric, those that stand out most first; from the first draw that
     agrees with the majority."""
     thresholds: tuple[float, ...]
@@ -60,7 +47,7 @@ class Betti:
     @property
     def ratios(self) -> tuple[Float[np.ndarray, "_"], ...]:
         """π of every bar, in falling order."""
-        return tuple(ratios(bars) for bars in self.bars)
+        return tuple(rips.ratios(bars) for bars in self.bars)
 
     @property
     def margins(self) -> tuple[tuple[float | None, float | None], ...]:
@@ -88,13 +75,13 @@ class Betti:
 class _Found(NamedTuple):
     """What one draw says about one dimension."""
 
-    bars: Bars
+    bars: rips.Bars
     threshold: float
     landmarks: int
 
     @property
     def number(self) -> int:
-        found = ratios(self.bars)
+        found = rips.ratios(self.bars)
         return int(np.count_nonzero((found > self.threshold) | np.isinf(found)))
 
 
@@ -150,7 +137,7 @@ def betti(
     starts = np.random.default_rng(seed).integers(points, size=draws)
     drawn = []
     for start in starts:
-        spread = farthest_points(distances_from, max(wanted), int(start))
+        spread = rips.farthest_points(distances_from, max(wanted), int(start))
         drawn.append(
             [
                 _find(spread, dimension, count, points=points, metric=judged, neighbours=neighbours)
@@ -171,7 +158,7 @@ def betti(
 
 
 def _find(
-    spread: Landmarks,
+    spread: rips.Landmarks,
     dimension: int,
     count: int,
     *,
@@ -185,15 +172,15 @@ def _find(
     )
     if metric == "euclidean" and dimension == 0:
         distances = _without_outliers(spread, limit)
-    (bars,) = rips_bars(distances, [dimension])
+    (bars,) = rips.rips_bars(distances, [dimension])
     return _Found(bars, limit, len(distances))
 
 
-def _without_outliers(spread: Landmarks, limit: float) -> Float[np.ndarray, "kept kept"]:
+def _without_outliers(spread: rips.Landmarks, limit: float) -> Float[np.ndarray, "kept kept"]:
     distances, share = spread.distances, spread.held / spread.held.sum()
     while True:
-        (bars,) = rips_bars(distances, [0])
-        closed = bars[ratios(bars) <= limit, 1].max(initial=0.0)
+        (bars,) = rips.rips_bars(distances, [0])
+        closed = bars[rips.ratios(bars) <= limit, 1].max(initial=0.0)
         _, piece = connected_components(distances <= closed, directed=False)
         # Less than 1 % of the points are not a piece of a Euclidean cloud but a handful of outliers.
         kept = np.bincount(piece, weights=share)[piece] >= 0.01
@@ -215,7 +202,7 @@ def _over(found: Float[np.ndarray, "bars"], threshold: float, which: int) -> flo
 
 def _metric_space(
     X: Num[np.ndarray, "points *features"] | sp.csr_array, metric: Metric, neighbours: int
-) -> tuple[DistancesFrom, int]:
+) -> tuple[rips.DistancesFrom, int]:
     if sp.issparse(X):
         if metric != "precomputed":
             raise CogmapError(
@@ -224,13 +211,13 @@ def _metric_space(
             )
         graph = checked_graph(X)
         _check_enough(graph.shape[0])
-        return along(graph, neighbours), graph.shape[0]
+        return rips.along(graph, neighbours), graph.shape[0]
     if metric == "precomputed":
         distances = _checked_distances(X)
         return lambda point: distances[point], len(distances)
     X = np.unique(np.asarray(checked_cloud(X)), axis=0)
     _check_enough(len(X))
-    return geodesic(X, neighbours) if metric == "geodesic" else euclidean(X), len(X)
+    return rips.geodesic(X, neighbours) if metric == "geodesic" else rips.euclidean(X), len(X)
 
 
 def _checked_distances(X: Num[np.ndarray, "points *features"]) -> Float[np.ndarray, "points points"]:

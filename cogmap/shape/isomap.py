@@ -1,7 +1,5 @@
 """Landmark Isomap: coordinates in which straight lines are as long as shortest paths in a neighbour graph."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,8 +34,7 @@ class PieceMap(NamedTuple):
         self, paths: Float[np.ndarray, "landmarks places"]
     ) -> Float[np.ndarray, "places components"]:
         """Give the coordinates of what is so far from the landmarks."""
-        placed: np.ndarray = (self.axes @ (paths**2 - self.mean[:, None])).T
-        return placed
+        return np.asarray((self.axes @ (paths**2 - self.mean[:, None])).T)
 
 
 class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimator):
@@ -107,7 +104,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         self.metric = metric
         self.seed = seed
 
-    def fit(self, X: Any, y: object = None) -> LandmarkIsomap:
+    def fit(self, X: Any, y: object = None) -> "LandmarkIsomap":
         """Find neighbours, paths and coordinates of a cloud, (points, features), dense or sparse."""
         del y
         checked_count("components", self.components)

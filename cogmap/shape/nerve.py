@@ -1,7 +1,5 @@
 """The nerve of a population: which cells fire together, and the holes that this leaves."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

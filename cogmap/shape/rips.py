@@ -1,7 +1,5 @@
 """Vietoris-Rips persistence on landmarks of a metric space."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 

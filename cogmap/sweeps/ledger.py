@@ -1,7 +1,5 @@
 """The ledger of a sweep on disk: its plan, and one file for each point that is finished."""
 
-from __future__ import annotations
-
 import errno
 import hashlib
 import json
@@ -15,6 +13,7 @@ from typing import Any
 from filelock import FileLock, Timeout
 
 from arena.atomic import atomic_write
+from cogmap.atomic import check_replaceable
 from cogmap.errors import CogmapError
 from cogmap.sweeps.plan import Plan
 from cogmap.sweeps.points import Point
@@ -57,12 +56,11 @@ class Ledger:
         CogmapError
             When the folder holds something else, someone else is at it, or it cannot be written.
         """
-        self._check_own()
+        check_replaceable(self.folder, MARK, "the folder of a sweep; choose another", (self.work.name,))
         with disk_errors(self.folder):
             self.work.mkdir(parents=True, exist_ok=True)
-        lock = FileLock(self.work / "sweep.lock")
         try:
-            lock.acquire(timeout=0)
+            lock = FileLock(self.work / "sweep.lock").acquire(timeout=0)
         except Timeout:
             raise CogmapError(
                 f"another command is at the sweep in {self.folder}; wait for its end or choose another"
@@ -93,6 +91,11 @@ class Ledger:
             raise CogmapError(f"{path} is damaged; remove it and the same command does this point again")
         return record
 
+    def lacks(self, point: Point, *, again: bool) -> bool:
+        """Whether a point is still to be done: it is not finished, or has failed and is to be done again."""
+        record = self.read(point)
+        return record is None or (again and "error" in record)
+
     def write(self, point: Point, record: Record) -> None:
         """Put down what was found, or that it failed."""
         text = json.dumps({"point": point.described, **record}, indent=1) + "\n"
@@ -111,16 +114,6 @@ class Ledger:
 
     def _path(self, point: Point) -> Path:
         return self.folder / "points" / f"{point.digest}.json"
-
-    def _check_own(self) -> None:
-        """Raise unless the folder is free, empty or a sweep's."""
-        if not self.folder.exists() and not self.folder.is_symlink():
-            return
-        if not self.folder.is_dir() or (
-            {file.name for file in self.folder.iterdir()} - {self.work.name}
-            and not (self.folder / MARK).is_file()
-        ):
-            raise CogmapError(f"{self.folder} exists and is not the folder of a sweep; choose another")
 
     def _lay_out(self, plan: Plan, points: Sequence[Point]) -> None:
         mark, layout = self.folder / MARK, "cogmap sweep 1"
@@ -142,8 +135,7 @@ class Ledger:
             with self.replacing(mark) as fresh:
                 fresh.write_text(json.dumps(header, indent=2) + "\n", encoding="utf-8")
         with disk_errors(self.folder):
-            for folder in (self.folder / "points", self.walks):
-                folder.mkdir(exist_ok=True)
+            self.walks.mkdir(exist_ok=True)
 
 
 @contextmanager

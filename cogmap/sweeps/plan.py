@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
@@ -81,14 +81,12 @@ class Plan(FrozenModel):
     def load(cls, path: str | Path) -> Plan:
         """Read a plan from a TOML file."""
         try:
-            text = Path(path).read_text(encoding="utf-8")
+            return cls.parse(Path(path).read_text(encoding="utf-8"))
+        except CogmapError as error:
+            raise CogmapError(f"{path}: {error}") from None
         except (OSError, UnicodeDecodeError) as error:
             reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
             raise CogmapError(f"cannot read the sweep {path}: {reason}") from None
-        try:
-            return cls.parse(text)
-        except CogmapError as error:
-            raise CogmapError(f"{path}: {error}") from None
 
     def to_toml(self) -> str:
         """Write the plan as TOML text, which `parse` reads back."""
@@ -106,21 +104,16 @@ class Plan(FrozenModel):
         """The parameters drawn on a log scale, and those of a grid with three or more at equal ratios."""
         if self.sample is not None:
             return frozenset(name for name, span in self.sample.ranges.items() if span.log)
-        values = {
-            name: [choice.shown for choice in _choices(some)] for name, some in (self.grid or {}).items()
-        }
-        return frozenset(name for name, some in values.items() if _is_geometric(some))
+        grid = self.grid or {}
+        return frozenset(name for name, values in grid.items() if _is_geometric(_choices(values)))
 
     def assignments(self) -> list[dict[str, Choice]]:
         """Give the points in order, each a choice by parameter that varies."""
-        if self.sample is not None:
-            drawn: Iterable[Mapping[str, Any]] = self.sample.draw()
-        elif self.grid is not None:
+        if self.grid is not None:
             axes = [_choices(values) for values in self.grid.values()]
             return [dict(zip(self.grid, point, strict=True)) for point in itertools.product(*axes)]
-        else:
-            drawn = self.points or []
-        return [{name: Choice(_shown(value), value) for name, value in point.items()} for point in drawn]
+        points = self.points or [] if self.sample is None else self.sample.draw()
+        return [{name: Choice(_shown(value), value) for name, value in point.items()} for point in points]
 
     def check(self) -> None:
         """Raise unless something is varied, in one way, and nothing is said twice."""
@@ -160,9 +153,9 @@ def _shown(value: object) -> Shown:
     return json.dumps(value, separators=(",", ":"), default=str)
 
 
-def _is_geometric(values: list[Shown]) -> bool:
-    numbers = [value for value in values if not isinstance(value, str)]
-    if len(numbers) < max(3, len(values)) or min(numbers) <= 0:
+def _is_geometric(choices: list[Choice]) -> bool:
+    numbers = [choice.shown for choice in choices if not isinstance(choice.shown, str)]
+    if len(numbers) < max(3, len(choices)) or min(numbers) <= 0:
         return False
     steps = np.diff(np.log(np.sort(numbers)))
     return bool(steps.min() > 0 and steps.max() < 1.1 * steps.min())

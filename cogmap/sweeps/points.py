@@ -1,7 +1,5 @@
 """Points of a sweep: parameters by name turned into what an experiment is called with."""
 
-from __future__ import annotations
-
 import hashlib
 import inspect
 import json
@@ -9,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any
 
 from arena import Arena, Camera, Nose
 from arena.bodies.catalogue import bodies
@@ -19,8 +17,6 @@ from cogmap.experiments.registry import FEWEST, Experiment, experiments
 from cogmap.inputs import check_choice, checked_count
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.sweeps.plan import Plan, Shown
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -45,10 +41,9 @@ class Point:
             name: part if name == "map" else {"kind": type(part).__name__, **part.model_dump(mode="json")}
             for name, part in self.overrides.items()
         }
-        room = self.room.model_dump(mode="json", exclude_defaults=True)
         return {
             "experiment": self.experiment,
-            "arena": room,
+            "arena": self.room.model_dump(mode="json", exclude_defaults=True),
             "views": self.views,
             "seed": self.seed,
             **parts,
@@ -87,72 +82,69 @@ def points_of(plan: Plan) -> list[Point]:
 
 def _settle(name: str, chosen: Experiment, given: Mapping[str, Any]) -> dict[str, Any]:
     """Turn parameters into the arguments of a point that it does not share with the rest of its sweep."""
-    families = {part.split(".")[0] for part in given}
-    build: dict[str, Callable[[Mapping[str, Any]], Any]] = {
-        "motion": lambda given: _chosen(given, "motion", motions(), "brownian"),
+    told: dict[str, dict[str, Any]] = {}
+    for parameter, value in given.items():
+        told.setdefault(parameter.partition(".")[0], {})[parameter] = value
+    build: dict[str, Callable[[dict[str, Any]], Any]] = {
+        "motion": lambda told: _of_kind(told, "motion", motions(), "brownian"),
         "camera": _camera,
-        "body": lambda given: _chosen(given, "body", bodies(), "disc"),
-        "nose": lambda given: Nose(**_fields(given, "nose", Nose.model_fields)),
+        "body": lambda told: _of_kind(told, "body", bodies(), "disc"),
+        "nose": lambda told: Nose(**_fields(told, Nose.model_fields)),
         "map": _map,
     }
-    unknown = families - {"views", "arena", *build}
-    if unknown:
-        known = ["views", "arena", "motion", "camera", "body", "nose.noise", "map.charts"]
-        raise _unknown(next(part for part in given if part.split(".")[0] in unknown), known)
-    if "arena" in families and not chosen.any_room:
-        raise CogmapError(f"{name} takes place in rooms of its own; leave {_first(given, 'arena')} out")
-    for family in build:
-        if family in families and family not in chosen.takes:
+    for family, (first, *_) in told.items():
+        if family not in {"views", "arena", *build}:
+            known = ["views", "arena", "motion", "camera", "body", "nose.noise", "map.charts"]
+            raise _unknown(first, known)
+        if family == "arena" and not chosen.any_room:
+            raise CogmapError(f"{name} takes place in rooms of its own; leave {first!r} out")
+        if family in build and family not in chosen.takes:
             takes = ", ".join(("views", *(["arena"] if chosen.any_room else []), *chosen.takes))
-            raise CogmapError(f"{name} does not take {_first(given, family)}; it takes {takes}")
+            raise CogmapError(f"{name} does not take {first!r}; it takes {takes}")
     return {
         "views": checked_count("views", given.get("views", chosen.views), FEWEST),
-        "room": _room(given, chosen),
-        "any_room": "arena" in families,
-        "overrides": {family: build[family](given) for family in build if family in families},
+        "room": _room(told.get("arena", {}), chosen.room),
+        "any_room": "arena" in told,
+        "overrides": {family: build[family](told[family]) for family in build if family in told},
     }
 
 
-def _room(given: Mapping[str, Any], chosen: Experiment) -> Arena:
-    source = given.get("arena", chosen.room)
+def _room(told: dict[str, Any], usual: str) -> Arena:
+    source = told.pop("arena", usual)
     if not isinstance(source, str):
         raise CogmapError(f"arena is {source!r}; give the name of a room or the path of a TOML file")
     room = Arena.load(source)
-    changes = _fields(given, "arena", Arena.model_fields)
+    changes = _fields(told, Arena.model_fields)
     return room.model_copy(update=changes) if changes else room
 
 
-def _chosen(given: Mapping[str, Any], family: str, kinds: Mapping[str, Callable[..., T]], usual: str) -> T:
+def _of_kind(told: dict[str, Any], family: str, kinds: Mapping[str, Callable[..., Any]], usual: str) -> Any:
     """Make what a registry has under the name that is given."""
-    kind = str(given.get(family, usual))
+    kind = str(told.pop(family, usual))
     check_choice(family, kind, tuple(kinds))
-    return kinds[kind](**_fields(given, family, inspect.signature(kinds[kind]).parameters))
+    return kinds[kind](**_fields(told, inspect.signature(kinds[kind]).parameters))
 
 
-def _camera(given: Mapping[str, Any]) -> Camera:
-    kind = str(given.get("camera", "panoramic"))
+def _camera(told: dict[str, Any]) -> Camera:
+    kind = str(told.pop("camera", "panoramic"))
     check_choice("camera", kind, ("panoramic", "perspective"))
-    usual = (Camera.panoramic if kind == "panoramic" else Camera.perspective)().model_dump()
-    return Camera(
-        **usual | _fields(given, "camera", [name for name in Camera.model_fields if name != "projection"])
-    )
+    known = [name for name in Camera.model_fields if name != "projection"]
+    return Camera(**getattr(Camera, kind)().model_dump() | _fields(told, known))
 
 
-def _map(given: Mapping[str, Any]) -> dict[str, int]:
+def _map(told: dict[str, Any]) -> dict[str, int]:
     known = [name for name in inspect.signature(CognitiveMap).parameters if name != "seed"]
-    return {name: checked_count(f"map.{name}", value) for name, value in _fields(given, "map", known).items()}
+    return {name: checked_count(f"map.{name}", value) for name, value in _fields(told, known).items()}
 
 
-def _fields(given: Mapping[str, Any], family: str, known: Collection[str]) -> dict[str, Any]:
+def _fields(told: Mapping[str, Any], known: Collection[str]) -> dict[str, Any]:
     """Give what is told of a family by the names of its fields, all of which must be known."""
     found = {}
-    for name, value in given.items():
-        start, _, key = name.partition(".")
-        if start != family or name in ("arena", "motion", "camera", "body"):
-            continue
-        if key not in known:
+    for name, value in told.items():
+        family, _, field = name.partition(".")
+        if field not in known:
             raise _unknown(name, [f"{family}.{item}" for item in known])
-        found[key] = value
+        found[field] = value
     return found
 
 
@@ -160,7 +152,3 @@ def _unknown(name: str, known: list[str]) -> CogmapError:
     near = get_close_matches(name, known, n=1)
     hint = f"did you mean {near[0]!r}?" if near else f"choose one of {', '.join(known)}"
     return CogmapError(f"unknown parameter {name!r}; {hint}")
-
-
-def _first(given: Mapping[str, Any], family: str) -> str:
-    return repr(next(name for name in given if name.split(".")[0] == family))

@@ -1,27 +1,22 @@
 """Sampling of points from ranges of parameters, at random or evenly."""
 
-from __future__ import annotations
-
 import math
 from typing import Annotated, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, FiniteFloat
 from scipy.stats import qmc
 
 from arena.rooms.parts import FrozenModel
 from cogmap.errors import CogmapError
 
-MOST = 2**16
-"""Points of one sample."""
-
 
 class Range(FrozenModel):
     """Where a parameter lies; both ends are reached by whole numbers only."""
 
-    low: Annotated[float, Field(allow_inf_nan=False)]
+    low: FiniteFloat
     """The smallest value."""
-    high: Annotated[float, Field(allow_inf_nan=False)]
+    high: FiniteFloat
     """The largest."""
     log: bool = False
     """Whether equal ratios are equally likely, and not equal differences."""
@@ -30,29 +25,26 @@ class Range(FrozenModel):
 
     def at(self, share: float) -> float | int:
         """Give the value below which this share, in [0, 1), of all values lies."""
-        end = self.high + 1 if self.integer else self.high
-        if self.log:
-            value = math.exp(math.log(self.low) + share * (math.log(end) - math.log(self.low)))
-        else:
-            value = self.low + share * (end - self.low)
+        onto, back = (math.log, math.exp) if self.log else (float, float)
+        low, end = onto(self.low), onto(self.high + self.integer)
+        value = back(low + share * (end - low))
         return math.floor(min(value, self.high)) if self.integer else value
 
     def check(self, name: str) -> None:
         """Raise unless there is something between the ends."""
+        begin = f"the range of {name!r} is from {self.low:g}"
         if self.low >= self.high:
-            raise CogmapError(f"the range of {name!r} is from {self.low:g} to {self.high:g}; give low < high")
+            raise CogmapError(f"{begin} to {self.high:g}; give low < high")
         if self.log and self.low <= 0:
-            raise CogmapError(f"the range of {name!r} is from {self.low:g}; on a log scale give low above 0")
+            raise CogmapError(f"{begin}; on a log scale give low above 0")
         if self.integer and (self.low % 1 or self.high % 1):
-            raise CogmapError(
-                f"the range of {name!r} is from {self.low:g} to {self.high:g}; give whole numbers as its ends"
-            )
+            raise CogmapError(f"{begin} to {self.high:g}; give whole numbers as its ends")
 
 
 class Sample(FrozenModel):
     """How many points are drawn, and from where."""
 
-    points: Annotated[int, Field(strict=True, ge=1, le=MOST)]
+    points: Annotated[int, Field(strict=True, ge=1, le=2**16)]
     """How many; fewer where points of whole numbers coincide."""
     ranges: Annotated[dict[str, Range], Field(min_length=1)]
     """By parameter."""
@@ -77,8 +69,5 @@ class Sample(FrozenModel):
             shares = qmc.Sobol(len(self.ranges), rng=rng).random_base2(power)[: self.points]
         else:
             shares = rng.random((self.points, len(self.ranges)))
-        drawn = [
-            {name: span.at(share) for (name, span), share in zip(self.ranges.items(), row, strict=True)}
-            for row in shares.tolist()
-        ]
-        return list({tuple(point.values()): point for point in drawn}.values())
+        drawn = (tuple(map(Range.at, self.ranges.values(), row)) for row in shares.tolist())
+        return [dict(zip(self.ranges, point, strict=True)) for point in dict.fromkeys(drawn)]

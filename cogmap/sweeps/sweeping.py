@@ -1,8 +1,7 @@
 """A sweep from its plan to its table and figures."""
 
-from __future__ import annotations
-
 import warnings
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
@@ -15,8 +14,8 @@ from cogmap.inputs import checked_count
 from cogmap.plots.sweep import plot_trend, statistics_of
 from cogmap.sweeps.ledger import Ledger, Record, disk_errors
 from cogmap.sweeps.plan import Plan
-from cogmap.sweeps.points import Point, points_of
-from cogmap.sweeps.running import Task, on_cluster, on_this_machine
+from cogmap.sweeps.points import points_of
+from cogmap.sweeps.running import do, on_cluster, on_this_machine
 from cogmap.sweeps.table import table_of
 from cogmap.tables import write_table
 
@@ -77,32 +76,27 @@ def sweep(
     points = points_of(plan)
     ledger = Ledger(Path(out).resolve())
     with ledger.opened(plan, points, keep_walks=keep_walks):
-        tasks = [Task(ledger, point, experiments()[point.experiment], retry_failed) for point in points]
-        left = [task for task in tasks if _is_left(ledger.read(task.point), again=retry_failed)]
-        done = len(tasks) - len(left)
-        with tqdm(total=len(tasks), initial=done, unit="point", disable=not progress) as bar:
+        left = [point for point in points if ledger.lacks(point, again=retry_failed)]
+        work = partial(do, ledger=ledger, chosen=experiments()[plan.experiment], again=retry_failed)
+        bar = tqdm(total=len(points), initial=len(points) - len(left), unit="point", disable=not progress)
+        with bar:
             if left:
-                doing = on_this_machine(left, workers) if scheduler is None else on_cluster(left, scheduler)
+                doing = (
+                    on_this_machine(work, left, workers)
+                    if scheduler is None
+                    else on_cluster(work, left, scheduler)
+                )
                 for _ in doing:
                     bar.update()
-        records = [_finished(ledger, point) for point in points]
+        records = [record for point in points if (record := ledger.read(point)) is not None]
+        if len(records) < len(points):
+            raise CogmapError(
+                f"a point that was done has vanished from {ledger.folder}; give the same command again"
+            )
         table = table_of(points, records)
         _warn_of_unlike(records)
         _write(ledger, table, plan)
     return table
-
-
-def _is_left(record: Record | None, *, again: bool) -> bool:
-    return record is None or (again and "error" in record)
-
-
-def _finished(ledger: Ledger, point: Point) -> Record:
-    record = ledger.read(point)
-    if record is None:
-        raise CogmapError(
-            f"a point that was done has vanished from {ledger.folder}; give the same command again"
-        )
-    return record
 
 
 def _warn_of_unlike(records: list[Record]) -> None:

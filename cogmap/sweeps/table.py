@@ -1,7 +1,5 @@
 """The tidy table of a sweep: a row for each point and seed."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any

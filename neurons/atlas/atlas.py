@@ -1,7 +1,5 @@
 """The atlas: which charts overlap, how far apart they lie, and the displacement across each overlap."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import torch
@@ -28,7 +26,7 @@ class Atlas:
     spacing: Float[Tensor, "charts"]
 
     @classmethod
-    def of(cls, centres: Float[Tensor, "charts components"], *, overlaps: int = 8, pool: int = 12) -> Atlas:
+    def of(cls, centres: Float[Tensor, "charts components"], *, overlaps: int = 8, pool: int = 12) -> "Atlas":
         """Find the neighbourhoods of chart centres.
 
         Parameters
@@ -43,14 +41,20 @@ class Atlas:
             one chart leaves its null direction to the noise.
         """
         count = len(centres)
-        # exact: |a|² + |b|² − 2 a·b would lose the digits of neighbours far from the origin
-        distance = torch.cdist(centres, centres, compute_mode="donot_use_mm_for_euclid_dist")
-        nearest = distance.topk(min(max(pool, overlaps + 1), count), dim=1, largest=False)
-        overlap = nearest.indices[:, 1 : overlaps + 1]
+        wanted = min(max(pool, overlaps + 1), count)
+        # one product ranks them; it loses the digits of neighbours far from the origin, so a few more are
+        # taken, and measured exactly
+        squared = torch.addmm(centres.square().sum(dim=1), centres, centres.T, alpha=-2.0)
+        near = squared.topk(min(wanted + 8, count), dim=1, largest=False).indices
+        distance, order = (centres[:, None] - centres[near]).norm(dim=2).sort(dim=1, stable=True)
+        nearest = near.gather(1, order[:, :wanted])
+        # exact distances put the chart itself first, at 0
+        overlap = nearest[:, 1 : overlaps + 1]
         here = torch.arange(count)[:, None].expand_as(overlap)
+        # smaller index first: k → j and j → k become equal, and `unique` keeps one
         pairs = torch.stack([torch.minimum(here, overlap), torch.maximum(here, overlap)], dim=2)
         return cls(
-            pool=nearest.indices[:, :pool],
+            pool=nearest[:, :pool],
             edges=torch.unique(pairs.flatten(0, 1), dim=0),
-            spacing=nearest.values[:, 1 : overlaps + 1].square().mean(dim=1).sqrt(),
+            spacing=distance[:, 1 : overlaps + 1].square().mean(dim=1).sqrt(),
         )

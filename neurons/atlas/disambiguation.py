@@ -1,7 +1,5 @@
 """Disambiguation of a smell at two places: a place unit keeps to one, where its charts hang together."""
 
-from __future__ import annotations
-
 import numpy as np
 import torch
 from jaxtyping import Bool, Complex, Float, Int
@@ -40,6 +38,7 @@ def place_branches(
     rival
         A group of active charts that evokes at least this part of what the strongest group does is a place.
     """
+    # in double precision: sums over many charts are compared with each other and with shares
     evoked = rates.double().numpy()
     count, cells = evoked.shape
     k, j = edges.numpy().T
@@ -56,6 +55,7 @@ def place_branches(
             steps = np.stack(
                 [dijkstra(graph, unweighted=True, indices=group, min_only=True) for group in groups[cell]]
             )
+            # of equals the first: a chart as far from two places goes to the one found first
             kept[:, cell] = steps.argmin(axis=0) == int(np.argmin(crowd))
         covered += evoked[:, cell] * kept[:, cell]
     return torch.from_numpy(kept)

@@ -29,5 +29,6 @@ def heading_axes(
     # n nᵀ and not n, as the sign of an eigenvector is arbitrary
     lines = torch.einsum("kdc,kpc->kpd", tangents, axes[atlas.pool])
     mean_line = torch.einsum("kpd,kpe->kde", lines, lines)
+    # the line that all agree on has the largest eigenvalue, and noise is spread over the other two
     largest = torch.linalg.eigh(mean_line.double()).eigenvectors[:, :, -1].float()
     return torch.einsum("kd,kdc->kc", largest, tangents)

@@ -58,16 +58,6 @@ class MetricMap(nn.Module):
     Boumal (2016), Nonconvex phase synchronization. SIAM J. Optimization 26 (the power iteration).
     """
 
-    spread: Tensor
-    ahead: Tensor
-    shared: Tensor
-    counted: Tensor
-    seen: Tensor
-    recent: Tensor
-    cross_validated_r2: Tensor
-    positions: Tensor
-    offsets: Tensor
-
     def __init__(
         self,
         cells: int,
@@ -81,18 +71,15 @@ class MetricMap(nn.Module):
         super().__init__()
         self.lag, self.straight, self.ridge, self.least_r2 = lag, straight, ridge, least_r2
         features = cells * (odorants + 1)
-        for name, shape in {
-            "spread": (features, features),
-            "ahead": (cells, features, 2),
-            "shared": (cells, cells),
-            "counted": (2,),
-        }.items():
-            self.register_buffer(name, torch.zeros(2, *shape, dtype=torch.double))
-        self.register_buffer("seen", torch.zeros((), dtype=torch.int64))
-        self.register_buffer("recent", torch.full((lag, odorants + 1), torch.nan))
-        self.register_buffer("cross_validated_r2", torch.full((2,), torch.nan))
-        self.register_buffer("positions", torch.full((features, 2), torch.nan))
-        self.register_buffer("offsets", torch.zeros(cells))
+        self.spread: Tensor = nn.Buffer(torch.zeros(2, features, features, dtype=torch.double))
+        self.ahead: Tensor = nn.Buffer(torch.zeros(2, cells, features, 2, dtype=torch.double))
+        self.shared: Tensor = nn.Buffer(torch.zeros(2, cells, cells, dtype=torch.double))
+        self.counted: Tensor = nn.Buffer(torch.zeros(2, 2, dtype=torch.double))
+        self.seen: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
+        self.recent: Tensor = nn.Buffer(torch.full((lag, odorants + 1), torch.nan))
+        self.cross_validated_r2: Tensor = nn.Buffer(torch.full((2,), torch.nan))
+        self.positions: Tensor = nn.Buffer(torch.full((features, 2), torch.nan))
+        self.offsets: Tensor = nn.Buffer(torch.zeros(cells))
 
     def forward(self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]) -> MetricReading:
         """Tell the position of smells and the offset of the compass there."""
@@ -119,24 +106,24 @@ class MetricMap(nn.Module):
             mine = straight & (half == number)
             v, w, u = moved[mine].double(), under[mine].double(), direction[mine].to(torch.cdouble)
             self.spread[number] += v.T @ v
+            # v is real: two real products, where half of a complex one would be wasted
             back = (w[:, :, None] * torch.view_as_real(u.conj().resolve_conj())[:, None]).movedim(2, 0)
             self.ahead[number] += (back.mT @ v).movedim(0, 2)
+            # less than 1 where heading swayed on the way: |u|² weighs such a way as the fit does
             power = u.abs().square()
             self.shared[number] += w.T @ (power[:, None] * w)
             self.counted[number] += torch.stack([power.sum(), mine.sum()])
 
     def solve(self) -> None:
         """Learn positions and offsets from the sums, if either half of the walk foretells the other."""
+        # fewer displacements than cells leave offsets that nothing determines
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
         if min(half.pairs for half in halves) < len(self.offsets):
             return
         one, other = halves
-        self.cross_validated_r2 = torch.tensor(
-            [
-                one.cross_validated_r2(*other.solve(self.ridge)),
-                other.cross_validated_r2(*one.solve(self.ridge)),
-            ]
-        ).float()
+        crossed = ((one, other), (other, one))
+        foretold = [mine.cross_validated_r2(*its.solve(self.ridge)) for mine, its in crossed]
+        self.cross_validated_r2 = torch.tensor(foretold)
         if not self.diagnosis():
             positions, turns = self._evidence(slice(0, 2)).solve(self.ridge)
             self.positions = torch.view_as_real(positions).float()
@@ -191,13 +178,16 @@ class _Evidence(NamedTuple):
     def solve(self, ridge: float) -> tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]:
         """Give β and f."""
         # cells that the walk never came by leave S singular
+        # relative to the mean square of a feature, as sums grow with the walk
         prior = ridge * self.spread.diagonal().mean() * torch.eye(len(self.spread), dtype=torch.double)
+        # S is real: two real right-hand sides cost half of a complex system
         parts = torch.view_as_real(self.ahead.mH.resolve_conj())
         solved = torch.linalg.solve(self.spread + prior, parts.flatten(1)).reshape(parts.shape)
         placing = torch.view_as_complex(solved.contiguous())
         turns = torch.ones(len(self.ahead), dtype=torch.cdouble)
         agreement = self.ahead @ placing
         for _ in range(100):  # nothing changes any more after about fifty
+            # sgn(0) is 0: a cell without any displacement keeps out of it instead of turning NaN
             turns = torch.sgn(agreement @ turns)
         return placing @ turns, turns
 
@@ -205,6 +195,7 @@ class _Evidence(NamedTuple):
         self, positions: Complex[Tensor, "features"], turns: Complex[Tensor, "cells"]
     ) -> float:
         """Share of Σ |u f|² that is left when Σ |v·β − u f|² is taken away, for β and f learnt elsewhere."""
+        # the square multiplied out, so that sums suffice and no view need be kept; real but for rounding
         moved = (positions.conj() @ self.spread.to(torch.cdouble) @ positions).real
         looked = (turns.conj() @ self.shared.to(torch.cdouble) @ turns).real
         both = (turns.conj() @ self.ahead @ positions).real

@@ -1,7 +1,5 @@
 """Synchronisation of signs, then phases, over the atlas: lateral weights turn local axes into one compass."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,11 +51,13 @@ class _Overlaps:
         """Largest eigenvalue and its vector, by inverse iteration just above 1, the bound of the spectrum."""
         k, j = self.edges.T
         degree = np.bincount(self.edges.ravel(), minlength=self.count)
+        # by degrees: the spectrum is bounded by 1, and charts with many overlaps do not rule
         entry = weight / np.sqrt(degree[k] * degree[j])
         index = (np.r_[k, j], np.r_[j, k])
         matrix = csc_array((np.r_[entry, entry.conj()], index), shape=(self.count, self.count))
         # the eigenvector where no weight has a phase: a start that needs no random numbers
         start = np.sqrt(degree).astype(complex)
+        # above the bound, not at it, where the matrix to be factorised would be singular
         value, vector = eigsh(matrix, k=1, sigma=1 + 1e-4, v0=start, tol=1e-8)
         return float(value[0]), vector[:, 0]
 
@@ -105,6 +105,7 @@ def synchronise(
     pieces, _ = connected_components(graph, directed=False)
     if pieces > 1:
         raise NeuronsError(f"the atlas falls into {pieces} pieces; use more charts or more views")
+    # in double precision: ω is a small difference of codes, and c·ω is summed around the whole ring
     n, c = axes.double().numpy(), centres.double().numpy()
     agreement = np.einsum("ec,ec->e", n[k], n[j])
     _, vector = overlaps.top(agreement.astype(complex))
@@ -127,6 +128,7 @@ def _close_ring(
     overlaps: _Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"], cells: int
 ) -> tuple[float, float, Float[np.ndarray, "charts"]]:
     """Find the scale at which loops close after one turn; it, the eigenvalue there, and the phases."""
+    # free of the unit of code: 1 is one radian across a typical overlap
     tried = scales / np.sqrt(np.mean(omega**2))
     values = _coarse_eigenvalues(overlaps, omega, tried, cells)
     # where nothing closes the eigenvalue is 1 but for rounding, which has maxima too
@@ -136,6 +138,7 @@ def _close_ring(
         raise NeuronsError("no loop of charts closes after a turn; use more charts or more views")
     best = peaks[0]
     near = slice(best - 1, best + 2)
+    # in log c, in which the grid is even: three points, one parabola, no residual
     bend, slope, _ = np.polyfit(np.log(tried[near]), values[near], 2)
     scale = float(np.exp(-slope / (2 * bend)))
     eigenvalue, vector = overlaps.top(np.exp(-1j * scale * omega))
@@ -164,6 +167,7 @@ def _coarse_eigenvalues(
     for depth in range(1, int(steps.max()) + 1):
         shell = np.flatnonzero(steps == depth)
         potential[shell] = potential[before[shell]] + step[before[shell], shell]
+    # 0 along the paths within a cell; what is left is what a cell cannot undo, or the step between two
     across = potential[k] + omega - potential[j]
     size = len(roots)
     pair = cell[k] * size + cell[j]
@@ -172,6 +176,7 @@ def _coarse_eigenvalues(
     values = []
     for scale in scales:
         turn = np.exp(-1j * scale * across)
+        # bincount adds real numbers only, in the order of edges: the same bits every time
         entry = np.bincount(pair, turn.real, size**2) + 1j * np.bincount(pair, turn.imag, size**2)
         half = entry.reshape(size, size) * norm
         values.append(eigh(half + half.conj().T, eigvals_only=True, subset_by_index=(size - 1, size - 1))[0])

@@ -20,17 +20,16 @@ class Afferents(nn.Module):
     (outstar rule).
     """
 
-    association: Tensor
-    activity: Tensor
-
     def __init__(self, charts: int, cells: int) -> None:
         super().__init__()
-        self.register_buffer("association", torch.zeros(charts, cells))
-        self.register_buffer("activity", torch.zeros(charts))
+        # float32 will do: a sum of like terms stands still only after some 2^24 of them
+        self.association: Tensor = nn.Buffer(torch.zeros(charts, cells))
+        self.activity: Tensor = nn.Buffer(torch.zeros(charts))
 
     @property
     def weights(self) -> Float[Tensor, "charts cells"]:
         """W in Hz; zero for charts that were never active."""
+        # 0 / 1e-12 is 0 where 0 / 0 would be NaN; a chart that was hardly active is taken for silent
         return self.association / self.activity.clamp(min=1e-12)[:, None]
 
     def partial_fit(self, excited: ChartActivity, rates: Float[Tensor, "views cells"]) -> None:

@@ -40,20 +40,15 @@ class Charts(nn.Module):
     Kambhatla & Leen (1997), Dimension reduction by local principal component analysis. Neural Computation 9.
     """
 
-    centres: Tensor
-    tangents: Tensor
-    responsibility: Tensor
-    variances: Tensor
-    initialised: Tensor
-
     def __init__(self, charts: int, components: int, *, generator: torch.Generator) -> None:
         super().__init__()
+        # orthonormal from the start, as Sanger's rule expects of rows that are to part
         draws = torch.randn(charts, components, DIMENSIONS, generator=generator)
-        self.register_buffer("centres", torch.zeros(charts, components))
-        self.register_buffer("tangents", torch.linalg.qr(draws).Q.mT.contiguous())
-        self.register_buffer("responsibility", torch.zeros(charts))
-        self.register_buffer("variances", torch.zeros(charts, DIMENSIONS))
-        self.register_buffer("initialised", torch.zeros((), dtype=torch.int64))
+        self.centres: Tensor = nn.Buffer(torch.zeros(charts, components))
+        self.tangents: Tensor = nn.Buffer(torch.linalg.qr(draws).Q.mT.contiguous())
+        self.responsibility: Tensor = nn.Buffer(torch.zeros(charts))
+        self.variances: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS))
+        self.initialised: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
 
     def __len__(self) -> int:
         return len(self.centres)
@@ -103,6 +98,7 @@ class Charts(nn.Module):
 
     def _compete(self, codes: Float[Tensor, "views components"], *, winners: int, window: float) -> None:
         chart = self._nearest(codes, winners)
+        # the last of m winners learns about e⁻² as much as the first, whatever m is
         h = torch.exp(-2.0 * torch.arange(chart.shape[1]) / chart.shape[1])
         # only what has won is touched: a third of the charts, and of the memory
         won, flat = chart.flatten().unique(return_inverse=True)
@@ -112,8 +108,10 @@ class Charts(nn.Module):
         # forgotten by the batch, and never below zero where a batch is longer than the window
         self.responsibility *= max(0.0, 1 - len(codes) / window)
         self.responsibility[won] += fed
+        # with this batch in the sum a first win has the rate 1: the mean of what was won
         rate = 1 / self.responsibility[won]
         tangents = self.tangents[won]
+        # from centres before they move: all that follows is of one state
         residual = (codes[:, None] - self.centres[chart]).flatten(0, 1)
         y = torch.einsum("ndc,nc->nd", tangents.index_select(0, flat), residual)
         weighted = weight[:, None] * y
@@ -124,6 +122,7 @@ class Charts(nn.Module):
         )
         self.centres[won] += rate[:, None] * shift
         drive = self.variances[won][:, :, None] * tangents
+        # sums over what was won, not means yet: one multiplication by `rate` below makes means of all terms
         decay = torch.tril(cross, diagonal=-1) @ tangents
         drive += rate[:, None, None] * (hebb - decay - fed[:, None, None] * drive)
         length = drive.norm(dim=2)
@@ -134,4 +133,5 @@ class Charts(nn.Module):
 
     def freeze(self) -> None:
         """Make the tangents of each chart orthonormal."""
+        # QR keeps the span of the first d tangents for every d: they stay in the order of their variances
         self.tangents = torch.linalg.qr(self.tangents.mT).Q.mT.contiguous()

@@ -27,9 +27,6 @@ class HeadDirectionCells(nn.Module):
         Rate at the preferred direction, Hz.
     """
 
-    preferred: Tensor
-    responsibility: Tensor
-
     def __init__(
         self,
         cells: int,
@@ -41,8 +38,8 @@ class HeadDirectionCells(nn.Module):
     ) -> None:
         super().__init__()
         self.concentration, self.peak = concentration, peak
-        self.register_buffer("preferred", 2 * torch.pi * torch.rand(cells, generator=generator) - torch.pi)
-        self.register_buffer("responsibility", torch.zeros(cells))
+        self.preferred: Tensor = nn.Buffer(2 * torch.pi * torch.rand(cells, generator=generator) - torch.pi)
+        self.responsibility: Tensor = nn.Buffer(torch.zeros(cells))
         self.afferents = Afferents(charts, cells)
 
     def compete(self, headings: Float[Tensor, "views"], *, window: float, winners: int = 3) -> None:
@@ -51,9 +48,11 @@ class HeadDirectionCells(nn.Module):
         The nearest `winners` units learn from each: with the neighbours on both sides none is left behind.
         `window` is how many views a unit remembers when it averages.
         """
+        # wrapped before they are ranked: −179° and 179° are neighbours
         apart = wrap_angle(headings[:, None] - self.preferred)
         unit = apart.abs().topk(min(winners, len(self.preferred)), dim=1, largest=False).indices
         flat = unit.flatten()
+        # a batch longer than the window forgets everything, and not more than that
         self.responsibility *= max(0.0, 1 - len(headings) / window)
         self.responsibility.index_add_(0, flat, torch.ones(len(flat)))
         # deviations are averaged, not angles: those would tear at ±π
@@ -62,4 +61,5 @@ class HeadDirectionCells(nn.Module):
 
     def tuning(self, headings: Float[Tensor, "views"]) -> Float[Tensor, "views cells"]:
         """Rates in Hz that a heading demands."""
+        # cos − 1 is never above 0: the peak is reached exactly, and nothing overflows whatever κ is
         return self.peak * torch.exp(self.concentration * (torch.cos(headings[:, None] - self.preferred) - 1))

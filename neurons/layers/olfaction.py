@@ -23,14 +23,12 @@ class Olfaction(nn.Module):
         line has no slope across it.
     """
 
-    gram: Tensor
-    cross: Tensor
-
     def __init__(self, charts: int, odorants: int, *, ridge: float = 1e-3) -> None:
         super().__init__()
         self.ridge = ridge
-        self.register_buffer("gram", torch.zeros(charts, DIMENSIONS + 1, DIMENSIONS + 1, dtype=torch.double))
-        self.register_buffer("cross", torch.zeros(charts, DIMENSIONS + 1, odorants, dtype=torch.double))
+        # sums of thousands of views, whose small differences are the slopes: seven digits are few
+        self.gram: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS + 1, DIMENSIONS + 1, dtype=torch.double))
+        self.cross: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS + 1, odorants, dtype=torch.double))
 
     def partial_fit(
         self,
@@ -44,16 +42,19 @@ class Olfaction(nn.Module):
         weighted = weight[:, :, None] * f
         gram = (weighted[:, :, :, None] * f[:, :, None]).flatten(0, 1)
         cross = (weighted[:, :, :, None] * log_odour[:, None, None]).flatten(0, 1)
+        # products in float32, sums in double: only the rounding of sums adds up
         self.gram.index_add_(0, chart.flatten(), gram.double())
         self.cross.index_add_(0, chart.flatten(), cross.double())
 
     def solve(self) -> tuple[Float[Tensor, "charts odorants"], Float[Tensor, "charts 3 odorants"]]:
         """Give intercepts (log concentration at the centre) and Jacobians (per unit of chart coordinate)."""
+        # of the chart's own sums: a prior that weighs alike after any number of views
         slopes = torch.diagonal(self.gram, dim1=1, dim2=2)[:, 1:].mean(dim=1)
         prior = torch.zeros_like(self.gram)
         for d in range(1, DIMENSIONS + 1):
             # a chart that no view excited has nothing but the 1e-9, and smells of nothing
             prior[:, d, d] = self.ridge * slopes + 1e-9
+        # the intercept is not drawn to 0: log concentration has no natural zero
         prior[:, 0, 0] = 1e-9
         solution = torch.linalg.solve(self.gram + prior, self.cross).float()
         return solution[:, 0], solution[:, 1:]

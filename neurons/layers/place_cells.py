@@ -36,22 +36,17 @@ class PlaceCells(nn.Module):
         a direction in which its smells hardly vary a unit would else fire in a sheet without width.
     """
 
-    centres: Tensor
-    covariances: Tensor
-    responsibility: Tensor
-    initialised: Tensor
-    branches: Tensor
-
     def __init__(
         self, cells: int, charts: int, odorants: int, *, peak: float = 20.0, flatness: float = 0.05
     ) -> None:
         super().__init__()
         self.peak, self.flatness = peak, flatness
-        self.register_buffer("centres", torch.zeros(cells, odorants))
-        self.register_buffer("covariances", torch.eye(odorants).repeat(cells, 1, 1))
-        self.register_buffer("responsibility", torch.zeros(cells))
-        self.register_buffer("initialised", torch.zeros((), dtype=torch.int64))
-        self.register_buffer("branches", torch.ones(charts, cells, dtype=torch.bool))
+        self.centres: Tensor = nn.Buffer(torch.zeros(cells, odorants))
+        # not 0: a unit that never won would have a field without width
+        self.covariances: Tensor = nn.Buffer(torch.eye(odorants).repeat(cells, 1, 1))
+        self.responsibility: Tensor = nn.Buffer(torch.zeros(cells))
+        self.initialised: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
+        self.branches: Tensor = nn.Buffer(torch.ones(charts, cells, dtype=torch.bool))
         self.afferents = Afferents(charts, cells)
 
     def compete(
@@ -76,10 +71,12 @@ class PlaceCells(nn.Module):
         unit = distance.topk(min(winners, cells), dim=1, largest=False).indices
         deviation = log_odours[:, None] - self.centres[unit]
         flat = unit.flatten()
+        # a batch longer than the window forgets everything, and not more than that
         self.responsibility *= max(0.0, 1 - len(log_odours) / window)
         self.responsibility.index_add_(0, flat, torch.ones(len(flat)))
         # a unit that has not won yet has no weight to divide by, and its numerators are zero
         rate = 1 / self.responsibility.clamp(min=1e-6)
+        # about centres that have not moved yet: around the new ones first wins would have no spread at all
         spread = (deviation[..., None] * deviation[:, :, None]).flatten(0, 1)
         fed = torch.zeros_like(self.responsibility).index_add_(0, flat, torch.ones(len(flat)))
         drawn = torch.zeros_like(self.covariances).index_add_(0, flat, spread)
@@ -114,10 +111,9 @@ class PlaceCells(nn.Module):
 
     def share(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:
         """Give each cell's part of the rate of all, r_i / Σ r, also where every rate is next to nothing."""
-        shares = log_odours.new_empty(len(log_odours), len(self.centres))
-        for exponent, part in zip(self._exponents(log_odours), shares.split(BLOCK), strict=True):
-            part.copy_(torch.softmax(exponent, dim=1))
-        return shares
+        # softmax takes the largest exponent away: far from all centres rates are 0, and their shares 0 / 0
+        shares = [torch.softmax(exponent, dim=1) for exponent in self._exponents(log_odours)]
+        return torch.cat(shares).to(log_odours.dtype)
 
     def _exponents(self, log_odours: Float[Tensor, "views odorants"]) -> Iterator[Float[Tensor, "_ cells"]]:
         """Give −½ (o − c)ᵀ P (o − c), P = Σ⁻¹, block by block.
@@ -127,11 +123,13 @@ class PlaceCells(nn.Module):
         odorants = self.centres.shape[1]
         # a unit that has learnt a single smell has no variance of its own
         mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1).clamp(min=1e-9)
+        # eigenvalues are then within `flatness` and odorants × mean: safe to invert
         floor = self.flatness * mean[:, None, None] * torch.eye(odorants)
         # In double precision, as the three terms are large and cancel.
         precision = torch.linalg.inv((self.covariances + floor).double())
         centres = self.centres.double()
         pull = torch.einsum("cop,cp->co", precision, centres)
+        # P is symmetric: its entries and those of o oᵀ pair up in either order
         weights = torch.cat([-0.5 * precision.flatten(1), pull], dim=1).T
         height = -0.5 * (pull * centres).sum(dim=1)
         for smells in log_odours.double().split(BLOCK):

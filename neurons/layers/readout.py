@@ -39,22 +39,17 @@ class Readout(nn.Module):
         charts hears several, narrow enough that none speaks where its tangents no longer fit.
     """
 
-    spacing: Tensor
-    phases: Tensor
-    turning: Tensor
-    intercepts: Tensor
-    jacobians: Tensor
-
     def __init__(
         self, charts: int, components: int, odorants: int, *, winners: int = 8, breadth: float = 0.7
     ) -> None:
         super().__init__()
         self.winners, self.breadth = winners, breadth
-        self.register_buffer("spacing", torch.ones(charts))
-        self.register_buffer("phases", torch.full((charts,), torch.nan))
-        self.register_buffer("turning", torch.full((charts, components), torch.nan))
-        self.register_buffer("intercepts", torch.full((charts, odorants), torch.nan))
-        self.register_buffer("jacobians", torch.full((charts, DIMENSIONS, odorants), torch.nan))
+        self.spacing: Tensor = nn.Buffer(torch.ones(charts))
+        # NaN, not 0: what is read too early must not pass for a heading or a smell
+        self.phases: Tensor = nn.Buffer(torch.full((charts,), torch.nan))
+        self.turning: Tensor = nn.Buffer(torch.full((charts, components), torch.nan))
+        self.intercepts: Tensor = nn.Buffer(torch.full((charts, odorants), torch.nan))
+        self.jacobians: Tensor = nn.Buffer(torch.full((charts, DIMENSIONS, odorants), torch.nan))
 
     def solve(
         self,
@@ -67,6 +62,7 @@ class Readout(nn.Module):
         self.spacing = atlas.spacing
         self.intercepts, self.jacobians = intercepts, jacobians
         if compass is not None:
+            # the scale goes into the axes once, not into the angle of every view
             self.phases, self.turning = compass.phases, compass.scale * compass.axes
 
     def excite(self, charts: Charts, codes: Float[Tensor, "views components"]) -> ChartActivity:
@@ -82,8 +78,10 @@ class Readout(nn.Module):
     ) -> tuple[Float[Tensor, "views"], Float[Tensor, "views odorants"]]:
         """Heading in the map's own frame (rad) and recalled log odour."""
         chart, weight = excited
+        # the difference before the product: n·z and n·C_k are large and nearly equal
         residual = codes[:, None] - charts.centres[chart]
         angle = self.phases[chart] + torch.einsum("nwc,nwc->nw", self.turning[chart], residual)
+        # as directions: a mean of angles tears at ±π, and whole turns drop out unwrapped
         heading = mean_angle(angle, weight)
         slope = torch.einsum("nwd,nwdo->nwo", charts.coordinates(codes, chart), self.jacobians[chart])
         odour = torch.einsum("nw,nwo->no", weight, self.intercepts[chart] + slope)

@@ -23,6 +23,7 @@ def _area_average(pixels: int, receptors: int) -> Float[Tensor, "receptors pixel
     """Matrix that averages pixels over equal stretches of the image; each row sums to one."""
     edge = torch.linspace(0, pixels, receptors + 1, dtype=torch.float64)
     pixel = torch.arange(pixels, dtype=torch.float64)
+    # stretches need not be whole pixels: a pixel counts by the part of it that lies inside
     overlap = torch.minimum(edge[1:, None], pixel + 1) - torch.maximum(edge[:-1, None], pixel)
     return (overlap.clamp(min=0) * receptors / pixels).float()
 
@@ -60,11 +61,6 @@ class Retina(nn.Module):
     Heeger (1992), Normalization of cell responses in cat striate cortex. Visual Neuroscience 9.
     """
 
-    average: Tensor
-    centre_surround: Tensor
-    pooling: Tensor
-    blur: Tensor
-
     def __init__(
         self,
         height: int,
@@ -86,19 +82,22 @@ class Retina(nn.Module):
             )
         self.features = rows * 3 * columns
         self.floor, self.faintest = floor, faintest
-        # the whole pixels of a receptor are summed as integers, which is exact and fast; fractions are weighed
-        self.block = height // rows if height % rows == 0 else 1, width // columns if width % columns == 0 else 1
+        # whole pixels of a receptor are summed as integers, which is exact and fast; fractions are weighed
+        self.block = (
+            height // rows if height % rows == 0 else 1,
+            width // columns if width % columns == 0 else 1,
+        )
         down, across = self.block
         # both blurs in one matrix, as their difference is linear: one product per view
         blur = _circular_gaussian(columns, acuity)
         differences = blur - _circular_gaussian(columns, surround)
-        for name, matrix in {
-            "average": _area_average(height // down, rows) / (down * across),
-            "centre_surround": _area_average(width // across, columns).T @ differences,
-            "pooling": _circular_gaussian(columns, pool),
-            "blur": blur,
-        }.items():
-            self.register_buffer(name, matrix, persistent=False)
+        # not saved with a map: they follow from the size of its views
+        average = _area_average(height // down, rows) / (down * across)
+        self.average: Tensor = nn.Buffer(average, persistent=False)
+        centre_surround = _area_average(width // across, columns).T @ differences
+        self.centre_surround: Tensor = nn.Buffer(centre_surround, persistent=False)
+        self.pooling: Tensor = nn.Buffer(_circular_gaussian(columns, pool), persistent=False)
+        self.blur: Tensor = nn.Buffer(blur, persistent=False)
 
     def forward(self, views: UInt8[Tensor, "views height width 3"]) -> Float[Tensor, "views features"]:
         """Turn views into normalised strips, rows × colours × columns."""
@@ -108,7 +107,9 @@ class Retina(nn.Module):
             self._look(batch, out)
         return strips
 
-    def _look(self, views: UInt8[Tensor, "batch height width 3"], out: Float[Tensor, "batch features"]) -> None:
+    def _look(
+        self, views: UInt8[Tensor, "batch height width 3"], out: Float[Tensor, "batch features"]
+    ) -> None:
         down, across = self.block
         # two bytes hold a sum of 128 pixels
         wide = torch.int16 if down * across <= 128 else torch.int32
@@ -117,8 +118,10 @@ class Retina(nn.Module):
         rows = self.average @ pixels.flatten(2)
         colours = rows.unflatten(2, (-1, 3)).transpose(2, 3).flatten(0, 2)
         strip = (colours @ self.centre_surround).unflatten(0, (len(views), -1))
-        # over rows and colours alike: one gain per column, so that a view keeps its colours
+        # over rows and colours alike: one gain per column, so that a view keeps its colours;
+        # pooled before the root: squares add up across columns, their roots do not
         contrast = (strip.square().mean(dim=1, keepdim=True) @ self.pooling).sqrt()
+        # never 0: even a view of one colour is divided by `faintest`
         gain = contrast + self.floor * contrast.mean(dim=2, keepdim=True) + self.faintest
         # one product for all lines of the batch: a product for each view would pay for its start each time
         torch.mm((strip / gain).flatten(0, 1), self.blur, out=out.view(-1, self.blur.shape[0]))

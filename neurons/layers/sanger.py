@@ -31,18 +31,13 @@ class Sanger(nn.Module):
     (the rate).
     """
 
-    mean: Tensor
-    weight: Tensor
-    variance: Tensor
-    steps: Tensor
-
     def __init__(self, features: int, components: int, *, generator: torch.Generator) -> None:
         super().__init__()
         initial = torch.linalg.qr(torch.randn(features, components, generator=generator)).Q.T
-        self.register_buffer("mean", torch.zeros(features))
-        self.register_buffer("weight", initial.contiguous())
-        self.register_buffer("variance", torch.zeros(components))
-        self.register_buffer("steps", torch.zeros((), dtype=torch.int64))
+        self.mean: Tensor = nn.Buffer(torch.zeros(features))
+        self.weight: Tensor = nn.Buffer(initial.contiguous())
+        self.variance: Tensor = nn.Buffer(torch.zeros(components))
+        self.steps: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
 
     def forward(self, x: Float[Tensor, "views features"]) -> Float[Tensor, "views components"]:
         """Project onto the components learnt so far."""
@@ -52,14 +47,17 @@ class Sanger(nn.Module):
         """Take one Hebbian step on a batch."""
         self.steps += 1
         step = int(self.steps)
+        # a rate of 1 / n makes it the mean of all batches; the first sets it, whatever it began with
         self.mean += (x.mean(dim=0) - self.mean) / step
         y = self(x)
         rate = 0.5 / (1 + step / 40)
-        # ⟨y (x − mean)ᵀ⟩ without a centred copy of x, which would take as long as the products
+        # ⟨y (x − mean)ᵀ⟩ without a centred copy of x, which would take as long as the products; a mean over
+        # the batch, so that the shorter one at the end of an epoch has the same rate
         hebb = (y.T @ x - y.sum(dim=0)[:, None] * self.mean) / len(x)
         # the strict triangle: what earlier neurons explain; the decay of the neuron itself is in `drive`
         decay = torch.tril(y.T @ y / len(x), diagonal=-1) @ self.weight
         drive = self.variance[:, None] * self.weight
+        # all rows step from the same weights: two products, not one a row
         drive += rate * (hebb - decay - drive)
         # unit rows by division and not by Oja's quadratic term, which diverges for rates near 1 / variance
         self.variance = drive.norm(dim=1)

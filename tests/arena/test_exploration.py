@@ -23,7 +23,7 @@ from arena.motions.replay import Replay
 from arena.motions.track import Track
 from arena.recordings import sharding
 from arena.recordings.recording import Recording
-from arena.recordings.sharding import is_complete
+from arena.recordings.sharding import file, is_complete
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
 
@@ -219,8 +219,8 @@ def test_killed_at_any_moment_nothing_whole_is_done_again(tmp_path: Path) -> Non
                 time.sleep(0.005)
             time.sleep(rng.uniform(0, 20 * 0.02))
             process.kill()
-        shard_files = sorted(path.glob("views/c/*/0/0/0"))
-        whole = [shard for shard in shard_files if is_complete(shard, 256)]
+        shards = [slice(first, first + 256) for first in range(0, views, 256)]
+        whole = [file(path / "views", rows) for rows in shards if is_complete(path / "views", rows)]
         before = [(shard.stat().st_ino, shard.stat().st_mtime_ns) for shard in whole]
         camera = Toy()
         go(camera, out=path, views=views)

@@ -3,21 +3,13 @@ from pathlib import Path
 import pytest
 
 from cogmap import CogmapError
-from cogmap.atomic import METRICS, atomic_write, check_absent, result_folder
+from cogmap.atomic import METRICS, atomic_write, result_folder
 
 
 def test_what_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(CogmapError, match="cannot write"), atomic_write(tmp_path / "file" / "page.html"):
         pass
-
-
-def test_what_is_there_is_left_alone(tmp_path: Path) -> None:
-    check_absent(tmp_path / "new")
-    (tmp_path / "lost").symlink_to(tmp_path / "gone")
-    for path in (tmp_path, tmp_path / "lost"):
-        with pytest.raises(CogmapError, match="exists already and is left as it is"):
-            check_absent(path)
 
 
 def test_a_result_appears_whole_and_replaces_an_earlier_one(tmp_path: Path) -> None:

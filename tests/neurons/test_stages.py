@@ -1,5 +1,6 @@
 from copy import deepcopy
 from dataclasses import dataclass
+from typing import Any
 
 import pytest
 import torch
@@ -9,7 +10,16 @@ from neurons.circuit import Circuit
 from neurons.errors import NeuronsError
 from neurons.merging import forked, merge
 from neurons.network import Network
-from neurons.stages import STAGES, AfferentStage, Batch, ChartStage, CodeStage, OlfactionStage, Stage
+from neurons.stages import (
+    STAGES,
+    AfferentStage,
+    Batch,
+    ChartStage,
+    CodeStage,
+    OlfactionStage,
+    Stage,
+    StripStage,
+)
 
 EPOCH = 200
 
@@ -31,7 +41,7 @@ class Odometer(nn.Module):
 
 
 @dataclass(frozen=True)
-class ToyStage(Stage):
+class ToyStage(StripStage):
     """Sums of smells, and of their changes along the walk."""
 
     name = "toy"
@@ -43,7 +53,7 @@ class ToyStage(Stage):
     def layers(self, circuit: Circuit) -> dict[str, nn.Module]:
         return {"odometer": Odometer(circuit.place.centres.shape[1])}
 
-    def learn(self, circuit: Circuit, batch: Batch) -> None:
+    def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:
         odometer = odometer_of(circuit)
         walk = torch.cat([odometer.last, batch.log_odours])
         odometer.total += batch.log_odours.sum(dim=0)
@@ -61,11 +71,11 @@ def odometer_of(circuit: Circuit) -> Odometer:
     return found
 
 
-def with_toy(at: int) -> tuple[Stage, ...]:
+def with_toy(at: int) -> tuple[Stage[Any], ...]:
     return (*STAGES[:at], ToyStage(), *STAGES[at:])
 
 
-def network(stages: tuple[Stage, ...] = STAGES, *, most_charts: int = 40) -> Network:
+def network(stages: tuple[Stage[Any], ...] = STAGES, *, most_charts: int = 40) -> Network:
     return Network(
         30,
         3,
@@ -179,7 +189,9 @@ def test_fewer_and_fewer_charts_learn_from_a_view(
 
     monkeypatch.setattr(learner.charts, "partial_fit", spy)
     for progress in (0.0, 0.25, 0.5, 0.75, 1.0):
-        ChartStage(winners=winners).learn(learner, Batch(*stream(50, 0), progress=progress, window=200.0))
+        strips, smells = stream(50, 0)
+        batch = Batch(learner.code(strips), smells, progress=progress, window=200.0)
+        ChartStage(winners=winners).learn(learner, batch)
     assert (asked[0], asked[-1]) == winners
     assert asked == sorted(asked, reverse=True)
     assert asked[2] == round((winners[0] * winners[1]) ** 0.5)
@@ -191,7 +203,7 @@ def test_the_nearest_charts_learn_the_smell_of_a_view(toy: Network) -> None:
         learner.olfaction.gram.zero_()
         learner.readout.spacing.fill_(1e3)
         strips, smells = stream(1, 0)
-        stage.learn(learner, Batch(strips, smells, progress=0.5, window=200.0))
+        stage.learn(learner, Batch(stage.see(learner, strips), smells, progress=0.5, window=200.0))
         nearest = torch.cdist(learner.code(strips), learner.charts.centres).argsort()[0, :winners]
         assert learner.olfaction.gram[:, 0, 0].nonzero().flatten().tolist() == sorted(nearest.tolist())
 
@@ -203,7 +215,7 @@ def test_progress_runs_from_the_first_view_of_a_stage_to_its_last() -> None:
     class Listening(CodeStage):
         name = "listening"
 
-        def learn(self, circuit: Circuit, batch: Batch) -> None:  # noqa: ARG002
+        def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:  # noqa: ARG002
             told.append(batch.progress)
             assert batch.window == EPOCH
 

@@ -38,8 +38,7 @@ def content(path: Path) -> dict[str, str]:
 
 def complete(path: Path) -> dict[str, tuple[int, int]]:
     """Which shards are whole, by inode and time of their last change."""
-    files = [(file(path / "views", rows), rows.stop - rows.start) for rows in shards(VIEWS)]
-    found = [one for one, count in files if is_complete(one, count)]
+    found = [file(path / "views", rows) for rows in shards(VIEWS) if is_complete(path / "views", rows)]
     return {str(one): (one.stat().st_ino, one.stat().st_mtime_ns) for one in found}
 
 

@@ -162,10 +162,8 @@ def fit_map_frame(mapped: Float[np.ndarray, "train 2"], positions: Float[np.ndar
     mirror = bool(abs(mirrored) > abs(plain))
     spread = np.mean(np.abs(found - found.mean()) ** 2)
     scale = (mirrored if mirror else plain) / max(spread, np.finfo(float).tiny)
-    centre = found.mean()
-    return MapFrame(
-        complex(scale), complex(true.mean() - scale * (centre.conj() if mirror else centre)), mirror
-    )
+    centre = found.mean().conj() if mirror else found.mean()
+    return MapFrame(complex(scale), complex(true.mean() - scale * centre), mirror)
 
 
 def place_map(mapped: Float[np.ndarray, "views 2"], frame: MapFrame) -> Float[np.ndarray, "views 2"]:

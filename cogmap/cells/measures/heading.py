@@ -75,24 +75,19 @@ def heading_statistics(
     check_seconds(seconds)
     curves = tuning_curves(rates, headings)
     vector = mean_vectors(curves)
-    table = pd.DataFrame(
-        {
-            "preferred_direction_rad": np.angle(vector),
-            "mean_vector_length": np.abs(vector),
-            "tuning_width_deg": np.rad2deg(tuning_widths(curves)),
-            "rayleigh_p": rayleigh_test(rates * seconds, headings).p_value,
-            "stability": curve_stability(rates, headings),
-            "drift_deg": np.rad2deg(_drift(rates, positions, headings, vector)),
-            "spatial_information": spatial_information(maps),
-        },
-        index=pd.RangeIndex(rates.shape[1], name="cell"),
-    )
-    table["passing"] = (
-        (table["mean_vector_length"] > least_vector)
-        & (table["drift_deg"] < most_drift_deg)
-        & (table["spatial_information"] < most_information)
-    )
-    return table
+    length, information = np.abs(vector), spatial_information(maps)
+    drift = np.rad2deg(_drift(rates, positions, headings, vector))
+    columns = {
+        "preferred_direction_rad": np.angle(vector),
+        "mean_vector_length": length,
+        "tuning_width_deg": np.rad2deg(tuning_widths(curves)),
+        "rayleigh_p": rayleigh_test(rates * seconds, headings).p_value,
+        "stability": curve_stability(rates, headings),
+        "drift_deg": drift,
+        "spatial_information": information,
+        "passing": (length > least_vector) & (drift < most_drift_deg) & (information < most_information),
+    }
+    return pd.DataFrame(columns).rename_axis("cell")
 
 
 def _drift(
@@ -100,18 +95,15 @@ def _drift(
     positions: Float[np.ndarray, "views 2"],
     headings: Float[np.ndarray, "views"],
     vector: Complex[np.ndarray, "cells"],
-    *,
-    blocks: int = 3,
-    least_views: int = 100,
-    bins: int = 12,
 ) -> Float[np.ndarray, "cells"]:
     """Median over blocks of the room of |preferred direction there − everywhere|, rad.
 
     100 views tell a preferred direction to about 2°; bins are coarser than over the whole room, so that those
     of a block have views.
     """
-    low, high = positions.min(axis=0), positions.max(axis=0)
-    block = BinEdges(*np.linspace(low, high, blocks + 1).T).bin_of(positions)
+    blocks, least_views, bins = 3, 100, 12
+    edges = np.linspace(positions.min(axis=0), positions.max(axis=0), blocks + 1)
+    block = BinEdges(*edges.T).bin_of(positions)
     turns = [
         np.abs(np.angle(mean_vectors(tuning_curves(rates[here], headings[here], bins)) * vector.conj()))
         for here in (block == index for index in range(blocks**2))

@@ -72,42 +72,23 @@ def place_statistics(
     fields = place_fields(maps) if fields is None else fields
     edges = maps.edges
     unsmoothed = rate_maps(rates, positions, edges.side, 0.0, edges=edges, visited=maps.visited)
-    table = pd.DataFrame(
-        {
-            "peak_rate_hz": np.nanmax(maps.rates, axis=(1, 2)),
-            "mean_rate_hz": rates.mean(axis=0, dtype=float),
-            "fields": fields.number,
-            "field_area_m2": fields.area,
-            "centre_x_m": fields.centre[:, 0],
-            "centre_y_m": fields.centre[:, 1],
-            "spatial_information": spatial_information(maps),
-            "sparsity": sparsity(maps),
-            "selectivity": selectivity(maps),
-            "coherence": coherence(unsmoothed),
-            "stability": map_stability(rates, positions, edges),
-            "in_field_direction_vector": _in_field_vectors(rates, positions, headings, maps, fields),
-        },
-        index=pd.RangeIndex(rates.shape[1], name="cell"),
-    )
-    table["passing"] = (
-        (table["fields"] == 1)
-        & (table["spatial_information"] > least_information)
-        & (table["in_field_direction_vector"] < most_direction)
-    )
-    return table
-
-
-def _in_field_vectors(
-    rates: Float[np.ndarray, "views cells"],
-    positions: Float[np.ndarray, "views 2"],
-    headings: Float[np.ndarray, "views"],
-    maps: RateMaps,
-    fields: PlaceFields,
-    *,
-    bins: int = 12,
-) -> Float[np.ndarray, "cells"]:
-    """Length of the mean vector of each cell over the views inside its fields, NaN without any."""
-    place = maps.edges.bin_of(positions)
+    place, bins = edges.bin_of(positions), 12
     inside = fields.masks.reshape(len(maps), -1)[:, place].T & (place >= 0)[:, None]
-    curves = means_by_bin(heading_bin(headings, bins), bins, rates, inside)
-    return np.asarray(np.abs(mean_vectors(curves.T)))
+    direction = np.abs(mean_vectors(means_by_bin(heading_bin(headings, bins), bins, rates, inside).T))
+    information, single = spatial_information(maps), fields.number == 1
+    columns = {
+        "peak_rate_hz": np.nanmax(maps.rates, axis=(1, 2)),
+        "mean_rate_hz": rates.mean(axis=0, dtype=float),
+        "fields": fields.number,
+        "field_area_m2": fields.area,
+        "centre_x_m": fields.centre[:, 0],
+        "centre_y_m": fields.centre[:, 1],
+        "spatial_information": information,
+        "sparsity": sparsity(maps),
+        "selectivity": selectivity(maps),
+        "coherence": coherence(unsmoothed),
+        "stability": map_stability(rates, positions, edges),
+        "in_field_direction_vector": direction,
+        "passing": single & (information > least_information) & (direction < most_direction),
+    }
+    return pd.DataFrame(columns).rename_axis("cell")

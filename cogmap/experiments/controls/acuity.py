@@ -10,10 +10,7 @@ import pandas as pd
 
 from arena import Camera, Recording
 from cogmap.evaluation.populations import trust_report, usual_charts
-from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
-from cogmap.experiments.trial import Trial
+from cogmap.experiments import Conditions, Result, Trial, experiment
 from cogmap.plots import plot_cases
 
 
@@ -34,26 +31,21 @@ def acuity(
     compass there is no error of heading.
     """
     usual = usual_charts(conditions.views)
-    cases = [(columns, usual) for columns in eyes]
-    cases += [(eyes[-1], round(share * usual)) for share in shares]
-    metrics: dict[str, Any] = {}
-    for columns in dict.fromkeys(columns for columns, _ in cases):
+    cases: dict[tuple[int, int], dict[str, Any]] = {}
+    for columns in eyes:
         trial = explore_at_acuity(conditions, columns)
-        for charts in (count for width, count in cases if width == columns):
-            metrics[f"{columns}_columns_{charts}_charts"] = _learn(trial, charts)
-    rows = [{"columns": columns, "charts": charts} for columns, charts in cases]
+        fewer = [round(share * usual) for share in shares] if columns == eyes[-1] else []
+        cases |= {(columns, charts): _learn(trial, charts) for charts in (usual, *fewer)}
     table = pd.DataFrame(
-        [{**row, **metrics["{columns}_columns_{charts}_charts".format(**row)]} for row in rows]
+        [{"columns": eye, "charts": charts, **found} for (eye, charts), found in cases.items()]
     )
     return Result(
-        metrics=metrics,
+        metrics={f"{eye}_columns_{charts}_charts": found for (eye, charts), found in cases.items()},
         tables={"cases": table},
         figures={
             "acuity": plot_cases(table, {"columns": "columns of the eye", "charts": "charts"}, doubling=True)
         },
-        captions={
-            "acuity": "Errors and cells with ever more columns of the eye, and with ever more charts",
-        },
+        captions={"acuity": "Errors and cells with ever more columns of the eye, and with ever more charts"},
     )
 
 

@@ -13,9 +13,7 @@ from cogmap.cells import RateMaps, Tuning, bin_edges, mean_vectors, rate_maps, t
 from cogmap.errors import CogmapError
 from cogmap.evaluation.ground_truth import map_correlations
 from cogmap.evaluation.populations import grow_map, perceive, trust_report
-from cogmap.experiments.conditions import Conditions, poses_of
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
+from cogmap.experiments import Conditions, Result, experiment
 from cogmap.plots import plot_examples
 
 PLATFORM, ROOM = 1.5, 2.5
@@ -43,13 +41,13 @@ def cue_rotation(conditions: Conditions) -> Result:
         for turns, late in ((0, 0), (0, 1), (1, 2))
     )
     cmap = grow_map(walk, conditions.map, seed=conditions.seed)
-    lit = perceive(cmap, before.views), perceive(cmap, after.views)
-    dark = cmap.perceive(odours=before.odours), cmap.perceive(odours=after.odours)
+    lit = [perceive(cmap, item.views) for item in (before, after)]
+    dark = [cmap.perceive(odours=item.odours) for item in (before, after)]
     place = {
-        name: [_tuning(seen.place, item) for seen, item in zip(pair, (before, after), strict=True)]
-        for name, pair in (("light", lit), ("dark", dark))
+        "light": [_tuning(lit[0].place, before), _tuning(lit[1].place, after)],
+        "dark": [_tuning(dark[0].place, before), _tuning(dark[1].place, after)],
     }
-    heading = [_tuning(seen.heading, item) for seen, item in zip(lit, (before, after), strict=True)]
+    heading = [_tuning(lit[0].heading, before), _tuning(lit[1].heading, after)]
     table = pd.DataFrame(
         {
             f"{name}_{cue}": map_correlations(turned(cells[0].maps, turns), cells[1].maps)
@@ -57,6 +55,7 @@ def cue_rotation(conditions: Conditions) -> Result:
             for cue, turns in (("walls", 1), ("smells", 0))
         }
     )
+    follows = pd.DataFrame({name: table[f"{name}_walls"] > table[f"{name}_smells"] for name in place})
     shift = np.rad2deg(np.angle(mean_vectors(heading[1].curves) * mean_vectors(heading[0].curves).conj()))
     figures = {
         "heading_shift_deg": float(np.median(shift)),
@@ -64,12 +63,7 @@ def cue_rotation(conditions: Conditions) -> Result:
     }
     return Result(
         metrics={
-            **{
-                f"place_follows_walls_{name}": float(
-                    (table[f"{name}_walls"] > table[f"{name}_smells"]).mean()
-                )
-                for name in place
-            },
+            **{f"place_follows_walls_{name}": float(share) for name, share in follows.mean().items()},
             **{f"correlation_{name}": float(found) for name, found in table.median().items()},
             **({} if np.isnan(shift).any() else figures),
             **trust_report(cmap),
@@ -122,6 +116,6 @@ def turned(maps: RateMaps, turns: int) -> RateMaps:
 
 def _tuning(rates: Float[np.ndarray, "views cells"], walk: Recording) -> Tuning:
     """Rate maps and tuning curves; a cell without a compass, of rate NaN, is silent."""
-    rates, poses = np.nan_to_num(rates), poses_of(walk)
+    rates, poses = np.nan_to_num(rates), walk.require("poses")
     edges = bin_edges(PLATFORM * np.array(CORNERS, dtype=float))
     return Tuning(rate_maps(rates, poses[:, :2], edges=edges), tuning_curves(rates, poses[:, 2]))

@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from cogmap.evaluation.ground_truth import as_one_table, map_correlations
+from cogmap.evaluation.ground_truth import map_correlations
 from cogmap.evaluation.scoring import score
-from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
-from cogmap.experiments.trial import Trial
-from cogmap.plots import plot_cell_types, plot_examples
+from cogmap.experiments import Conditions, Result, Trial, experiment, show_cells
 
 
 @experiment(room="furnished", views=17_000, takes=("nose", "motion", "camera", "body", "map"))
@@ -30,37 +26,23 @@ def darkness(conditions: Conditions) -> Result:
         "smell, place": truth.measure(dark.place),
         "smell, heading": truth.measure(dark.heading),
     }
-    scores = {
-        "sight": trial.score,
-        "smell": score(
-            dark,
-            truth.poses,
-            train=(smelt, truth.train),
-            reachable=truth.reachable,
-            cells=(cells["smell, place"], cells["smell, heading"]),
-        ),
-    }
+    by_smell = score(
+        dark,
+        truth.poses,
+        train=(smelt, truth.train),
+        reachable=truth.reachable,
+        cells=(cells["smell, place"], cells["smell, heading"]),
+    )
     same = map_correlations(cells["sight, place"].maps, cells["smell, place"].maps)
-    table = as_one_table(cells)
-    metrics = {
-        name: {
-            **cells[f"{name}, place"].place_figures,
-            **cells[f"{name}, heading"].heading_figures,
-            **figures,
-        }
-        for name, figures in scores.items()
-    }
     return Result(
-        metrics={**metrics, "map_correlation": float(np.nanmedian(same))},
-        tables={"cells": table},
-        figures={
-            "cells": plot_cell_types(table),
-            "examples": plot_examples(
-                {name: found.tuning for name, found in cells.items() if found.rates.any()}
-            ),
+        {
+            "sight": trial.figures,
+            "smell": {
+                **cells["smell, place"].place_figures,
+                **cells["smell, heading"].heading_figures,
+                **by_smell,
+            },
+            "map_correlation": float(np.nanmedian(same)),
         },
-        captions={
-            "cells": "What each cell tells of position and of heading, by population",
-            "examples": "Six cells of each population: rate maps, and rate by heading",
-        },
+        *show_cells(cells, silent=False),
     )

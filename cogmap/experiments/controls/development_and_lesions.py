@@ -14,10 +14,7 @@ from sklearn.metrics import pairwise_distances_argmin
 from cogmap.cells.measures.correlations import correlations
 from cogmap.evaluation.ground_truth import CellMetrics, GroundTruth, as_one_table
 from cogmap.evaluation.populations import perceive, trust_report
-from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
-from cogmap.experiments.trial import Trial
+from cogmap.experiments import Conditions, Result, Trial, experiment, pose_columns
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.lesions import afferent_weights, lesioned, weights_of, with_blank_afferents
 from cogmap.plots import plot_afferents, plot_courses
@@ -40,11 +37,13 @@ class Seen(NamedTuple):
         """How many cells pass, and how well place and heading can be read from them."""
         truth = self.place.truth
         train, test = (np.nan_to_num(rates).astype(float) for rates in (self.train[1], self.heading.rates))
-        cosine, sine = Ridge(alpha=1.0).fit(train, _on_circle(truth.train[:, 2])).predict(test).T
+        headings = truth.train[:, 2]
+        circle = np.column_stack([np.cos(headings), np.sin(headings)])
+        cosine, sine = Ridge(alpha=1.0).fit(train, circle).predict(test).T
         turned = np.angle(np.exp(1j * (np.arctan2(sine, cosine) - truth.poses[:, 2])))
         return {
             "place_cells_passing": self.place.place_figures["place_cells_passing"],
-            "place_coverage": self.place.place_coverage,
+            "place_coverage": self.place.place_figures["place_coverage"],
             "heading_cells_passing": self.heading.heading_figures["heading_cells_passing"],
             **truth.position(self.train[0], self.place.rates),
             "heading_median_deg": float(np.rad2deg(np.median(np.abs(turned)))),
@@ -83,12 +82,10 @@ def development(
         begun = seen
         growth.append({"views": seen, **_driven(growing, views, truth).figures})
     order = np.random.default_rng(conditions.seed).permutation(cmap.charts)
+    lesions = (lesioned(cmap, order[: round(share * len(order))]) for share in silent)
     silencing = [
-        {
-            "silent": share,
-            **_driven(lesioned(cmap, order[: round(share * len(order))]), views, truth).figures,
-        }
-        for share in silent
+        {"silent": share, **_driven(left, views, truth).figures}
+        for share, left in zip(silent, lesions, strict=True)
     ]
     driven, direct = _driven(cmap, views, truth), _direct(cmap, views, truth)
     weights = {cells: afferent_weights(cmap, cells) for cells in POPULATIONS}
@@ -144,16 +141,11 @@ def _direct(cmap: CognitiveMap, views: tuple[Any, Any], truth: GroundTruth) -> S
     preferred = weights_of(cmap)["heading.preferred"]
     cells = HeadDirectionCells(len(preferred), 1, generator=torch.Generator())
     cells.preferred = preferred
-    found = []
-    for activity in (perceive(cmap, batch) for batch in views):
-        place = cmap.perceive(odours=np.exp(activity.odour)).place
-        found.append((place, cells.tuning(torch.from_numpy(activity.phase)).numpy()))
-    train, test = found
+    train, test = (
+        (cmap.perceive(odours=np.exp(seen.odour)).place, cells.tuning(torch.from_numpy(seen.phase)).numpy())
+        for seen in (perceive(cmap, batch) for batch in views)
+    )
     return Seen(train, *(truth.measure(rates) for rates in test))
-
-
-def _on_circle(headings: Float[np.ndarray, "views"]) -> Float[np.ndarray, "views 2"]:
-    return np.column_stack([np.cos(headings), np.sin(headings)])
 
 
 def _agreement(one: Float[np.ndarray, "views cells"], other: Float[np.ndarray, "views cells"]) -> float:
@@ -173,15 +165,12 @@ def _listed(
 ) -> pd.DataFrame:
     # Weights below 1 Hz are left out: nearly all of a table of every pair would be such.
     chart, cell = np.nonzero(weights >= 1.0)
-    x, y, heading = preferred[chart].T
     return pd.DataFrame(
         {
             "population": cells,
             "cell": cell,
             "chart": chart,
-            "x_m": x,
-            "y_m": y,
-            "heading_rad": heading,
+            **pose_columns(preferred[chart]),
             "weight_hz": weights[chart, cell],
         }
     )

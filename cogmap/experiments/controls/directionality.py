@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from matplotlib.figure import Figure
+
 from arena import Brownian, Motion, Track
-from cogmap.cells import Tuning
 from cogmap.evaluation.ground_truth import CellMetrics, as_one_table
 from cogmap.evaluation.populations import competing_cells, trust_report
-from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
-from cogmap.experiments.trial import Trial
+from cogmap.experiments import Conditions, Result, Trial, experiment
 from cogmap.plots import plot_cell_types, plot_examples
 
 
@@ -32,7 +30,7 @@ def directionality(conditions: Conditions) -> Result:
     """
     metrics: dict[str, Any] = {}
     cells: dict[str, CellMetrics] = {}
-    drawn: dict[str, dict[str, Tuning]] = {}
+    examples: dict[str, Figure] = {}
     walks: dict[str, Motion] = {"open_field": Brownian(), "corridor": Track()}
     for name, motion in walks.items():
         trial = replace(Trial.of(conditions, motion), reachable=None)
@@ -40,28 +38,20 @@ def directionality(conditions: Conditions) -> Result:
             "vision_only": trial.truth.measure(competing_cells(*trial.codes, seed=conditions.seed)[0]),
             "fused": trial.place,
         }
-        metrics[name] = {
-            kind: {**item.place_figures, "directional": _share(item)} for kind, item in found.items()
-        }
-        metrics[name] |= trust_report(trial.cmap)
-        label = name.replace("_", " ")
-        here = {f"{label}, {kind.replace('_', ' ')}": item for kind, item in found.items()}
-        drawn[name] = {population: item.tuning for population, item in here.items()}
+        told = {kind: {**item.place_figures, "directional": _share(item)} for kind, item in found.items()}
+        metrics[name] = {**told, **trust_report(trial.cmap)}
+        here = {f"{name}, {kind}".replace("_", " "): item for kind, item in found.items()}
+        examples[f"examples_{name}"] = plot_examples({kind: item.tuning for kind, item in here.items()})
         cells |= here
     table = as_one_table(cells)
     return Result(
         metrics=metrics,
         tables={"cells": table},
-        figures={
-            "cells": plot_cell_types(table),
-            **{f"examples_{name}": plot_examples(batch) for name, batch in drawn.items()},
-        },
+        figures={"cells": plot_cell_types(table), **examples},
         captions={
             "cells": "What each cell tells of position and of heading, by walk and population",
-            **{
-                f"examples_{name}": f"Six cells of each population in the {name.replace('_', ' ')}"
-                for name in drawn
-            },
+            "examples_open_field": "Six cells of each population in the open field",
+            "examples_corridor": "Six cells of each population in the corridor",
         },
     )
 

@@ -2,15 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from cogmap.evaluation.ground_truth import as_one_table
 from cogmap.evaluation.populations import competing_cells, trust_report
-from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
-from cogmap.experiments.trial import Trial
-from cogmap.plots import plot_cell_types, plot_examples
+from cogmap.experiments import Conditions, Result, Trial, experiment, show_cells
 
 
 @experiment(room="furnished", views=17_000, takes=("nose", "motion", "camera", "body", "map"))
@@ -27,10 +20,9 @@ def fusion(conditions: Conditions) -> Result:
     """
     trial = Trial.of(conditions)
     truth, cmap = trial.truth, trial.cmap
-    smells = [np.log(item.require("odours")) for item in (trial.walk, trial.fresh)]
     cells = {
         "vision only": truth.measure(competing_cells(*trial.codes, seed=conditions.seed)[0]),
-        "olfaction only": truth.measure(competing_cells(*smells, seed=conditions.seed)[0]),
+        "olfaction only": truth.measure(competing_cells(*trial.smells, seed=conditions.seed)[0]),
         "fused, place": trial.place,
         "fused, heading": trial.heading,
     }
@@ -38,29 +30,17 @@ def fusion(conditions: Conditions) -> Result:
         name: {**cells[name].place_figures, **cells[name].heading_figures}
         for name in ("vision only", "olfaction only")
     }
-    nose = truth.position(*smells)
-    table = as_one_table(cells)
     return Result(
-        metrics={
+        {
             "vision_only": alone["vision only"],
-            "olfaction_only": {**alone["olfaction only"], **nose},
+            "olfaction_only": {**alone["olfaction only"], **truth.position(*trial.smells)},
             "fused": {
-                **cells["fused, place"].place_figures,
-                **cells["fused, heading"].heading_figures,
-                **trial.score,
-                **{f"nose_{key}": value for key, value in nose.items()},
+                **trial.figures,
+                **trial.nose_figures,
                 **trust_report(cmap),
                 "metric_reason": cmap.metric_reason_,
                 "seconds": {stage: round(spent, 3) for stage, spent in cmap.seconds_.items()},
             },
         },
-        tables={"cells": table},
-        figures={
-            "cells": plot_cell_types(table),
-            "examples": plot_examples({name: found.tuning for name, found in cells.items()}),
-        },
-        captions={
-            "cells": "What each cell tells of position and of heading, by population",
-            "examples": "Six cells of each population: rate maps, and rate by heading",
-        },
+        *show_cells(cells),
     )

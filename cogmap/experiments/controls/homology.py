@@ -14,9 +14,7 @@ from jaxtyping import Float
 from arena import Arena, Brownian, Camera, Disc
 from cogmap.evaluation.homology_of_map import homologies
 from cogmap.evaluation.populations import grow_map, perceive
-from cogmap.experiments.conditions import Conditions, poses_of
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
+from cogmap.experiments import Conditions, Result, experiment
 from cogmap.plots import plot_barcode_grid, plot_barcodes
 from cogmap.shape import Betti, Nerve, population_nerve
 
@@ -133,7 +131,7 @@ def _visit(conditions: Conditions) -> list[Case]:
     activity = perceive(cmap, walk.views)
     found = homologies(cmap.encode(walk.views), activity, seed=conditions.seed)
     nerves = {name: population_nerve(getattr(activity, name)) for name in POPULATIONS if name in found}
-    expected = expected_numbers(conditions.room, poses_of(walk)[0, :2])
+    expected = expected_numbers(conditions.room, walk.require("poses")[0, :2])
     return [
         Case(conditions.room.name, name, numbers, found.get(name), nerves.get(name), cmap.reason_)
         for name, numbers in expected.items()

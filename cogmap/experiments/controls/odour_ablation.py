@@ -10,10 +10,8 @@ import pandas as pd
 
 from arena import Arena, Nose, Recording
 from cogmap.evaluation.populations import trust_report
-from cogmap.experiments.conditions import FRESH_SEED, Conditions, poses_of
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
-from cogmap.experiments.trial import Trial
+from cogmap.experiments import Conditions, Result, Trial, experiment
+from cogmap.experiments.conditions import FRESH_SEED
 from cogmap.plots import plot_cases
 
 PLACES = ((-1.5, -1.0), (1.6, 0.9), (1.2, -1.1), (-1.3, 1.0))
@@ -31,22 +29,18 @@ def odour_ablation(conditions: Conditions, *, noises: tuple[float, ...] = (0.0, 
     """
     trial = Trial.of(conditions)
     # The usual nose has a noise of 10 %, the usual room three sources.
-    cases = [(count, 0.1) for count in range(1, len(PLACES) + 1)]
-    cases += [(3, noise) for noise in noises if noise != 0.1]
-    labels = {"sources": "odour sources", "noise": "noise of the nose"}
-    metrics = {f"{count}_sources_{noise:g}_noise": _learn(trial, count, noise) for count, noise in cases}
+    given = [(count, 0.1) for count in range(1, len(PLACES) + 1)]
+    given += [(3, noise) for noise in noises if noise != 0.1]
+    cases = {(count, noise): _learn(trial, count, noise) for count, noise in given}
     table = pd.DataFrame(
-        [
-            {"sources": count, "noise": noise, **metrics[f"{count}_sources_{noise:g}_noise"]}
-            for count, noise in cases
-        ]
+        [{"sources": count, "noise": noise, **found} for (count, noise), found in cases.items()]
     )
     return Result(
-        metrics=metrics,
+        metrics={f"{count}_sources_{noise:g}_noise": found for (count, noise), found in cases.items()},
         tables={"cases": table},
-        figures={"sources": plot_cases(table, labels)},
+        figures={"sources": plot_cases(table, {"sources": "odour sources", "noise": "noise of the nose"})},
         captions={
-            "sources": "What the cells tell of place with more sources of smell, and with a noisier nose",
+            "sources": "What the cells tell of place with more sources of smell, and with a noisier nose"
         },
     )
 
@@ -54,22 +48,22 @@ def odour_ablation(conditions: Conditions, *, noises: tuple[float, ...] = (0.0, 
 def smell(room: Arena, walk: Recording, *, count: int, noise: float, seed: int) -> np.ndarray:
     """Smell so many sources in a room on a walk that has been taken."""
     scented = room.model_copy(update={"sources": [{"position": place} for place in PLACES[:count]]})
-    concentration = scented.odours.concentration(poses_of(walk)[:, :2])
+    concentration = scented.odours.concentration(walk.require("poses")[:, :2])
     return Nose(noise=noise).smell(concentration, walk.times, np.random.default_rng(seed))
 
 
 def _learn(trial: Trial, count: int, noise: float) -> dict[str, Any]:
     conditions = trial.conditions
-    smells = [
-        smell(conditions.room, item, count=count, noise=noise, seed=conditions.seed + late)
-        for item, late in ((trial.walk, 0), (trial.fresh, FRESH_SEED))
-    ]
-    trial = replace(trial, walk=replace(trial.walk, odours=smells[0]))
-    train, test = trial.train.place, trial.test.place
+    walk, fresh = (
+        replace(item, odours=smell(conditions.room, item, count=count, noise=noise, seed=seed))
+        for item, seed in ((trial.walk, conditions.seed), (trial.fresh, conditions.seed + FRESH_SEED))
+    )
+    trial = replace(trial, walk=walk, fresh=fresh)
+    place = trial.truth.position(trial.train.place, trial.test.place)
     return {
         **trial.score,
-        **{f"nose_{key}": value for key, value in trial.truth.position(*map(np.log, smells)).items()},
-        **{f"place_{key}": value for key, value in trial.truth.position(train, test).items()},
+        **trial.nose_figures,
+        **{f"place_{key}": value for key, value in place.items()},
         "single_field": float((trial.place.place["fields"] == 1).mean()),
         **trust_report(trial.cmap),
     }

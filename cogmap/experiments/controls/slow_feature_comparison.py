@@ -11,10 +11,7 @@ from arena.motions.slow_turning import SlowTurning
 from cogmap.evaluation.ground_truth import CellMetrics, as_one_table
 from cogmap.evaluation.peers.slow_features import slow_cells
 from cogmap.evaluation.populations import trust_report
-from cogmap.experiments.conditions import Conditions
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
-from cogmap.experiments.trial import Trial
+from cogmap.experiments import Conditions, Result, Trial, experiment
 from cogmap.plots import plot_cell_types
 
 
@@ -73,22 +70,10 @@ def _learn(conditions: Conditions, pair: WalkPair) -> tuple[dict[str, Any], dict
         walk = walk[np.random.default_rng(conditions.seed).permutation(len(walk))]
     trial = Trial(conditions, walk, conditions.explore(pair.scored, camera, fresh=True))
     learnt, slow = slow_cells(trial.codes[0], *trial.codes, seed=conditions.seed)
-    found = {
-        "slow features": trial.truth.measure(slow.rates),
-        "fused place": trial.place,
-        "fused heading": trial.heading,
-    }
+    cells = trial.truth.measure(slow.rates)
+    position = trial.truth.position(learnt.features, slow.features)
     metrics = {
-        "slow_features": {
-            **found["slow features"].place_figures,
-            **found["slow features"].heading_figures,
-            **trial.truth.position(learnt.features, slow.features),
-        },
-        "fused": {
-            **found["fused place"].place_figures,
-            **found["fused heading"].heading_figures,
-            **trial.score,
-            **trust_report(trial.cmap),
-        },
+        "slow_features": {**cells.place_figures, **cells.heading_figures, **position},
+        "fused": {**trial.figures, **trust_report(trial.cmap)},
     }
-    return metrics, found
+    return metrics, {"slow features": cells, "fused place": trial.place, "fused heading": trial.heading}

@@ -2,28 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from jaxtyping import Float
 from sklearn.metrics import r2_score
 from sklearn.neighbors import KNeighborsRegressor
 
 from arena import Brownian, Camera
-from cogmap.cells import HeadingFrame, heading_errors
+from arena.angles import wrap_angle
+from cogmap import plots
 from cogmap.evaluation.quasi_metric import quasi_metric
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments import Conditions, Result, experiment
 from cogmap.experiments.paper.view_manifold import view_manifold
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
-from cogmap.plots import (
-    plot_barcodes,
-    plot_compass,
-    plot_embedding,
-    plot_position,
-    plot_quasi_metric,
-    plot_room,
-)
 from cogmap.shape import LandmarkIsomap
 
 
@@ -37,7 +26,7 @@ def brownian(conditions: Conditions, *, components: int = 4, held_out: float = 0
     folded; `held_out` is a share of the views.
     """
     walk = conditions.explore(Brownian(), Camera.perspective())
-    poses = poses_of(walk)
+    poses = walk.require("poses")
     found = view_manifold(walk.views, conditions)
     order = np.random.default_rng(conditions.seed).permutation(len(poses))
     held, train = np.split(order, [round(held_out * len(poses))])
@@ -46,14 +35,14 @@ def brownian(conditions: Conditions, *, components: int = 4, held_out: float = 0
         isomap.fit_transform(found.words[train]), poses[train], isomap.transform(found.words[held])
     )
     truth = poses[held]
-    turn = heading_errors(read.headings, truth[:, 2], HeadingFrame(0.0, mirror=False))
+    turn = wrap_angle(read[:, 2] - truth[:, 2])
     near = quasi_metric(found.graph, poses, conditions.seed)
     shape = found.metrics(poses)
     places = {"x (m)": poses[:, 0], "y (m)": poses[:, 1]}
     return Result(
         metrics={
-            "position_r2": r2_score(truth[:, :2], read.positions, multioutput="raw_values").tolist(),
-            "position_median_m": float(np.median(np.linalg.norm(read.positions - truth[:, :2], axis=1))),
+            "position_r2": r2_score(truth[:, :2], read[:, :2], multioutput="raw_values").tolist(),
+            "position_median_m": float(np.median(np.linalg.norm(read[:, :2] - truth[:, :2], axis=1))),
             **shape,
             "loop_resultant": shape["heading_resultant"],
             "heading_resultant": float(abs(np.exp(1j * turn).mean())),
@@ -62,29 +51,20 @@ def brownian(conditions: Conditions, *, components: int = 4, held_out: float = 0
         },
         tables={"views": found.table(poses), "distances": near.pairs, "places": near.places},
         figures={
-            "room": plot_room(conditions.room, poses),
-            "torus": plot_embedding(found.embedding, poses[:, 2], places),
-            "torus_fourth": plot_embedding(found.embedding, poses[:, 2], places, coordinates=(0, 1, 3)),
-            "heading": plot_compass(read.headings, truth[:, 2], truth[:, :2]),
-            "position": plot_position(read.positions, truth[:, :2]),
-            "distances": plot_quasi_metric(near.pairs, near.places),
-            "barcodes": plot_barcodes({"images of a walk": found.shape}),
+            "room": plots.plot_room(conditions.room, poses),
+            "torus": plots.plot_embedding(found.embedding, poses[:, 2], places),
+            "torus_fourth": plots.plot_embedding(found.embedding, poses[:, 2], places, coordinates=(0, 1, 3)),
+            "heading": plots.plot_compass(read[:, 2], truth[:, 2], truth[:, :2]),
+            "position": plots.plot_position(read[:, :2], truth[:, :2]),
+            "distances": plots.plot_quasi_metric(near.pairs, near.places),
+            "barcodes": plots.plot_barcodes({"images of a walk": found.shape}),
         },
         captions={
-            "room": "The room from above, with the way through it",
             "torus": "The first three coordinates of the views, coloured by heading and by place",
             "torus_fourth": "The first, second and fourth coordinate, coloured by heading and by place",
-            "heading": "Heading read off the views against the true one",
             "position": "Position read off the views against the true one",
-            "distances": "Distance along the manifold against distance between poses",
-            "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
         },
     )
-
-
-class _Read(NamedTuple):
-    positions: Float[np.ndarray, "views 2"]
-    headings: Float[np.ndarray, "views"]
 
 
 def _read_poses(
@@ -92,9 +72,9 @@ def _read_poses(
     poses: Float[np.ndarray, "train 3"],
     held: Float[np.ndarray, "views components"],
     neighbours: int = 10,
-) -> _Read:
+) -> Float[np.ndarray, "views 3"]:
     """Mean pose of the nearest views in the embedding, weighted by 1 / distance."""
     target = np.column_stack([poses[:, :2], np.cos(poses[:, 2]), np.sin(poses[:, 2])])
     reader = KNeighborsRegressor(neighbours, weights="distance").fit(train, target)
     x, y, cosine, sine = reader.predict(held).T
-    return _Read(np.column_stack([x, y]), np.arctan2(sine, cosine))
+    return np.column_stack([x, y, np.arctan2(sine, cosine)])

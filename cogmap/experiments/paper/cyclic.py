@@ -5,19 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from arena import Camera, Cyclic
+from cogmap import plots
 from cogmap.evaluation.quasi_metric import quasi_metric
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments import Conditions, Result, experiment
 from cogmap.experiments.paper.view_manifold import view_manifold
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
-from cogmap.plots import (
-    plot_barcodes,
-    plot_compass,
-    plot_embedding,
-    plot_quasi_metric,
-    plot_translation,
-    plot_walk,
-)
 from cogmap.shape import height_coordinate
 
 
@@ -29,7 +20,7 @@ def cyclic(conditions: Conditions) -> Result:
     went to and fro on, which is the first principal axis of its positions.
     """
     walk = conditions.explore(Cyclic(), Camera.perspective())
-    poses = poses_of(walk)
+    poses = walk.require("poses")
     found = view_manifold(walk.views, conditions)
     # The two ends of the cylinder show in four coordinates; later ones bend it.
     height = height_coordinate(found.graph, found.embedding[:, :4], found.phase)
@@ -45,20 +36,19 @@ def cyclic(conditions: Conditions) -> Result:
         },
         tables={"views": table, "distances": near.pairs, "places": near.places},
         figures={
-            "walk": plot_walk(conditions.room, walk.times, poses),
-            "cylinder": plot_embedding(found.embedding, poses[:, 2], {"translation (m)": along}),
-            "heading": plot_compass(table["loop_rad"].to_numpy()[known], poses[known, 2], poses[known, :2]),
-            "translation": plot_translation(height[known], along[known], poses[known, 2]),
-            "distances": plot_quasi_metric(near.pairs, near.places),
-            "barcodes": plot_barcodes({"images of a run to and fro": found.shape}),
+            "walk": plots.plot_walk(conditions.room, walk.times, poses),
+            "cylinder": plots.plot_embedding(found.embedding, poses[:, 2], {"translation (m)": along}),
+            "heading": plots.plot_compass(
+                table["loop_rad"].to_numpy()[known], poses[known, 2], poses[known, :2]
+            ),
+            "translation": plots.plot_translation(height[known], along[known], poses[known, 2]),
+            "distances": plots.plot_quasi_metric(near.pairs, near.places),
+            "barcodes": plots.plot_barcodes({"images of a run to and fro": found.shape}),
         },
         captions={
             "walk": "The way through the room, and place and heading over time",
             "cylinder": "Coordinates on the manifold, coloured by heading and by place along the way",
-            "heading": "Heading read off the views against the true one",
             "translation": "Coordinate along the cylinder against place along the way",
-            "distances": "Distance along the manifold against distance between poses",
-            "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
         },
     )
 

@@ -13,9 +13,7 @@ from sklearn.decomposition import PCA
 
 from arena import Arena, Brownian, Camera
 from cogmap.evaluation.pose_agreement import motion_distances
-from cogmap.experiments.conditions import Conditions, poses_of
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
+from cogmap.experiments import Conditions, Result, experiment, pose_columns
 from cogmap.graph import nearest_points
 from cogmap.plots import plot_barcodes, plot_confusion, plot_views
 from cogmap.shape import Betti, betti
@@ -63,7 +61,6 @@ def distinguishability(conditions: Conditions, *, queries: int = 2000) -> Result
         captions={
             "confusion": "Where the nearest view was taken, turned half round or not",
             "views": "A view of each room, beside that from the opposite pose",
-            "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
         },
     )
 
@@ -74,16 +71,15 @@ def _look(conditions: Conditions, room: Arena, queries: int) -> _Seen:
     walk = here.explore(Brownian(), strips)
     fresh = here.explore(Brownian(), strips, views=min(queries, conditions.views), fresh=True)
     train, test = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), conditions.seed)
-    nearest = poses_of(walk)[nearest_points(train, 1, queries=test).indices[:, 0]]
-    poses = poses_of(fresh)
+    nearest = walk.require("poses")[nearest_points(train, 1, queries=test).indices[:, 0]]
+    poses = fresh.require("poses")
     opposite = _opposite(room, poses)
-    columns = ["x_m", "y_m", "heading_rad"]
-    table = pd.DataFrame(poses, columns=columns).join(
-        pd.DataFrame(nearest, columns=[f"nearest_{name}" for name in columns])
-    )
+    confused = _apart(nearest, opposite) < _apart(nearest, poses)
     first = np.stack([poses[0], opposite[0]])
     return _Seen(
-        nearest=table.assign(confused=_apart(nearest, opposite) < _apart(nearest, poses)),
+        nearest=pd.DataFrame(
+            {**pose_columns(poses), **pose_columns(nearest, "nearest_"), "confused": confused}
+        ),
         shape=betti(train, seed=conditions.seed),
         pair=strips.render(room, first),
         poses=first,
@@ -109,12 +105,7 @@ def retina_codes(
     retina = Retina(*train.shape[1:3])
     with one_thread():
         sensed = [
-            np.concatenate(
-                [
-                    retina(torch.from_numpy(views[first : first + batch])).numpy()
-                    for first in range(0, len(views), batch)
-                ]
-            )
+            torch.cat([retina(part) for part in torch.from_numpy(views).split(batch)]).numpy()
             for views in (train, test)
         ]
         pca = PCA(min(components, len(train)), random_state=seed)

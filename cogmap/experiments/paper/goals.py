@@ -11,14 +11,12 @@ from jaxtyping import Float
 
 from arena import Arena, Brownian, Camera, Chemotaxis, Disc, Recording
 from cogmap.cells import fit_heading_frame, heading_errors
-from cogmap.evaluation.ground_truth import GroundTruth, as_one_table
+from cogmap.evaluation.ground_truth import GroundTruth
 from cogmap.evaluation.populations import reachable_places
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments import Conditions, Result, experiment, pose_columns, show_cells
 from cogmap.experiments.paper.distinguishability import retina_codes
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
 from cogmap.graph import nearest_points, neighbour_graph
-from cogmap.plots import plot_cell_types, plot_examples, plot_goals
+from cogmap.plots import plot_goals
 from cogmap.shape import betti, circular_coordinate
 
 PEAK = 20.0
@@ -45,7 +43,7 @@ def goals(conditions: Conditions) -> Result:
     visits = [_visit(conditions, goal, camera, count) for goal in goal_grid(conditions.room)]
     fresh = conditions.explore(Brownian(), camera, fresh=True)
     seen = np.concatenate([np.asarray(visit.views) for visit in visits])
-    poses = np.concatenate([poses_of(visit) for visit in visits])
+    poses = np.concatenate([visit.require("poses") for visit in visits])
     ring = np.repeat(np.arange(len(visits)), [len(visit) for visit in visits])
     codes, test = retina_codes(seen, np.asarray(fresh.views), conditions.seed)
     place = ring_distances(test, codes, ring)
@@ -57,23 +55,16 @@ def goals(conditions: Conditions) -> Result:
     orientation = spread_orientation(codes, ring, order)
     nearest = nearest_points(codes, 1, queries=test).indices[:, 0]
     turn = _aligned(orientation, poses[:, 2])
-    read = _aligned(orientation[nearest], poses_of(fresh)[:, 2])
-    truth = GroundTruth(poses, poses_of(fresh), reachable_places(conditions.room, Disc()))
+    read = _aligned(orientation[nearest], fresh.require("poses")[:, 2])
+    truth = GroundTruth(poses, fresh.require("poses"), reachable_places(conditions.room, Disc()))
     cells = {
         "rings, place": truth.measure(PEAK * np.exp(-0.5 * (place / width) ** 2)),
         "rings, heading": truth.measure(orientation_rates(orientation[nearest])),
     }
-    table = as_one_table(cells)
-    views = pd.DataFrame(poses, columns=["x_m", "y_m", "heading_rad"]).assign(
-        ring=ring, orientation_rad=poses[:, 2] + turn
-    )
-    shape = betti(
-        ring_graph(codes[ring == order[0]]),
-        "precomputed",
-        max_dimension=1,
-        landmarks=(100, 50),
-        seed=conditions.seed,
-    )
+    tables, figures = show_cells(cells)
+    views = pd.DataFrame({**pose_columns(poses), "ring": ring, "orientation_rad": poses[:, 2] + turn})
+    middle = ring_graph(codes[ring == order[0]])
+    shape = betti(middle, "precomputed", max_dimension=1, landmarks=(100, 50), seed=conditions.seed)
     return Result(
         metrics={
             "goals": len(visits),
@@ -87,17 +78,9 @@ def goals(conditions: Conditions) -> Result:
             "heading_p95_deg": float(np.rad2deg(np.percentile(abs(read), 95))),
             "heading_resultant": float(abs(np.exp(1j * read).mean())),
         },
-        tables={"views": views, "cells": table},
-        figures={
-            "goals": plot_goals(conditions.room, views),
-            "cells": plot_cell_types(table),
-            "examples": plot_examples({name: found.tuning for name, found in cells.items()}),
-        },
-        captions={
-            "goals": "The views at each goal, as strokes that point where the body looks",
-            "cells": "What each cell tells of position and of heading, by population",
-            "examples": "Six cells of each population: rate maps, and rate by heading",
-        },
+        tables={"views": views, **tables},
+        figures={"goals": plot_goals(conditions.room, views), **figures},
+        captions={"goals": "The views at each goal, as strokes that point where the body looks"},
     )
 
 

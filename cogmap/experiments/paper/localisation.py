@@ -10,9 +10,7 @@ from jaxtyping import Float
 
 from arena import Brownian, Camera
 from arena.angles import wrap_angle
-from cogmap.experiments.conditions import Conditions, poses_of
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
+from cogmap.experiments import Conditions, Result, experiment, pose_columns, pose_errors
 from cogmap.features import BagOfWords
 from cogmap.navigation import Localiser, Location, image_codes
 from cogmap.plots import plot_localisation, plot_neighbours
@@ -32,17 +30,17 @@ def localisation(conditions: Conditions, *, noise: float = 0.01) -> Result:
     words = BagOfWords(seed=conditions.seed, progress=conditions.progress)
     localiser = Localiser(words.fit_transform(walk.views), codes=image_codes(walk.views))
     found = localiser.locate(words.transform(fresh.views), codes=image_codes(fresh.views))
-    train, truth = poses_of(walk), poses_of(fresh)
+    train, truth = walk.require("poses"), fresh.require("poses")
     read = interpolated_poses(found, train)
     placed = found.indices[:, 0] >= 0
     nearest = np.where(placed[:, None], train[found.indices[:, 0]], np.nan)
     table = pd.DataFrame(
         {
-            **_columns("", truth),
-            **_columns("read_", read),
-            **_columns("nearest_", nearest),
-            **_errors("", read, truth),
-            **_errors("nearest_", nearest, truth),
+            **pose_columns(truth),
+            **pose_columns(read, "read_"),
+            **pose_columns(nearest, "nearest_"),
+            **pose_errors(read, truth),
+            **pose_errors(nearest, truth, "nearest_"),
         }
     )
     # Table 3 has five queries with five neighbours each.
@@ -79,19 +77,6 @@ def interpolated_poses(
     return np.column_stack([places, wrap_angle(heading)])
 
 
-def _columns(prefix: str, poses: Float[np.ndarray, "views 3"]) -> dict[str, np.ndarray]:
-    return dict(zip((f"{prefix}x_m", f"{prefix}y_m", f"{prefix}heading_rad"), poses.T, strict=True))
-
-
-def _errors(
-    prefix: str, read: Float[np.ndarray, "views 3"], truth: Float[np.ndarray, "views 3"]
-) -> dict[str, np.ndarray]:
-    return {
-        f"{prefix}position_error_m": np.linalg.norm((read - truth)[:, :2], axis=1),
-        f"{prefix}heading_error_deg": np.rad2deg(np.abs(wrap_angle((read - truth)[:, 2]))),
-    }
-
-
 def _summary(table: pd.DataFrame) -> dict[str, Any]:
     return {
         f"{prefix}{what}_{name}_{unit}": float(np.nanpercentile(table[f"{prefix}{what}_error_{unit}"], share))
@@ -111,8 +96,8 @@ def _table_3(
             "query": query,
             "rank": rank,
             "view": view,
-            **_columns("query_", truth[query]),
-            **_columns("", train[view]),
-            **_errors("", train[view], truth[query]),
+            **pose_columns(truth[query], "query_"),
+            **pose_columns(train[view]),
+            **pose_errors(train[view], truth[query]),
         }
     )

@@ -17,9 +17,7 @@ from cogmap.errors import CogmapError
 from cogmap.evaluation.deviation import path_deviation, path_length
 from cogmap.evaluation.peers.prm import prm_paths
 from cogmap.evaluation.shortest import shortest_lengths
-from cogmap.experiments.conditions import Conditions, poses_of
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
+from cogmap.experiments import Conditions, Result, experiment, pose_columns
 from cogmap.navigation import PanoramaCode, VisualRoadmap
 from cogmap.plots import plot_routes, plot_views
 
@@ -49,7 +47,7 @@ def roadmap(conditions: Conditions) -> Result:
     """
     room, body, around = conditions.room, Disc(), Camera.panoramic(120, 20)
     walk = conditions.explore(Brownian(), around, body=Disc(radius=body.radius + 0.03))
-    poses = poses_of(walk)
+    poses = walk.require("poses")
     pairs = draw_pairs(room, body.radius, conditions.seed)
     started = time.perf_counter()
     code = PanoramaCode()
@@ -59,14 +57,16 @@ def roadmap(conditions: Conditions) -> Result:
     ends = code.transform(around.render(room, pairs.reshape(-1, 3))).reshape(PAIRS, 2, -1)
     plans = _plan(planner, ends, pairs, poses)
     shortest = shortest_lengths(room, pairs[:, :, :2], body.radius)
-    table = _pairs_table(pairs, shortest).join(_scores(room, [plan.path for plan in plans], shortest))
+    ends_of = {**pose_columns(pairs[:, 0], "start_"), **pose_columns(pairs[:, 1], "goal_")}
+    scores = _scores(room, [plan.path for plan in plans], shortest)
+    table = pd.DataFrame({**ends_of, "shortest_m": shortest}).join(scores)
     table["query_ms"] = [plan.milliseconds for plan in plans]
     peer = prm_paths(room, pairs, radius=body.radius, milestones=conditions.views, seed=conditions.seed)
     metrics = _summary(table)
     if peer is not None:
-        theirs = _scores(room, peer, shortest).add_prefix("prm_")
-        table = table.join(theirs)
-        metrics |= _summary(theirs, "prm_")
+        theirs = _scores(room, peer, shortest)
+        table = table.join(theirs.add_prefix("prm_"))
+        metrics |= {f"prm_{name}": value for name, value in _summary(theirs).items()}
         metrics["deviation_ratio"] = metrics["deviation_mean"] / metrics["prm_deviation_mean"]
     detour = shortest / np.linalg.norm(pairs[:, 1, :2] - pairs[:, 0, :2], axis=1)
     done = np.flatnonzero(table["success"])
@@ -82,9 +82,7 @@ def roadmap(conditions: Conditions) -> Result:
             "seconds": {"roadmap": round(seconds, 3)},
         },
         tables={"pairs": table, "routes": _routes_table([plan.route for plan in plans], poses)},
-        figures=_figures(
-            room, [(plans[pair], None if peer is None else peer[pair]) for pair in shown], poses
-        ),
+        figures=_figures(room, [(plans[pair], peer[pair] if peer else None) for pair in shown], poses),
         captions={
             "routes": "Routes planned over views, around obstacles, and beside them those of the peer",
             "images": "What is seen on the way along one route",
@@ -150,12 +148,11 @@ def _scores(
         row: dict[str, Any] = {"success": path is not None}
         if path is not None:
             length = path_length(path)
-            deviation = path_deviation(path)
             row |= {
                 "length_m": length,
                 "length_ratio": length / least,
                 "touches": bool(shapely.LineString(path[:, :2]).distance(solids) < reach),
-                **{f"deviation_{name}": value for name, value in deviation._asdict().items()},
+                **{f"deviation_{name}": value for name, value in path_deviation(path)._asdict().items()},
             }
         rows.append(row)
     names = ["success", "length_m", "length_ratio", "touches"]
@@ -163,38 +160,22 @@ def _scores(
     return pd.DataFrame(rows, columns=names).astype({"touches": "boolean"})
 
 
-def _summary(scores: pd.DataFrame, prefix: str = "") -> dict[str, float]:
-    of = {name: scores[f"{prefix}{name}"] for name in ("success", "length_ratio", "touches")}
-    done = of["success"].astype(bool)
+def _summary(scores: pd.DataFrame) -> dict[str, float]:
+    done = scores["success"].astype(bool)
     return {
-        f"{prefix}success": float(done.mean()),
-        f"{prefix}length_ratio_median": float(of["length_ratio"].median()),
-        f"{prefix}paths_touching": float(of["touches"][done].astype(float).mean()),
-        **{
-            f"{prefix}deviation_{short}": float(scores[f"{prefix}deviation_{name}"].mean())
-            for short, name in (("mean", "mean"), ("variance", "variance"), ("max", "maximum"))
-        },
+        "success": float(done.mean()),
+        "length_ratio_median": float(scores["length_ratio"].median()),
+        "paths_touching": float(scores["touches"][done].astype(float).mean()),
+        "deviation_mean": float(scores["deviation_mean"].mean()),
+        "deviation_variance": float(scores["deviation_variance"].mean()),
+        "deviation_max": float(scores["deviation_maximum"].mean()),
     }
-
-
-def _pairs_table(pairs: Float[np.ndarray, "pairs 2 3"], shortest: np.ndarray) -> pd.DataFrame:
-    names = [f"{end}_{what}" for end in ("start", "goal") for what in ("x_m", "y_m", "heading_rad")]
-    table = pd.DataFrame(pairs.reshape(-1, 6), columns=names)
-    return table.assign(shortest_m=shortest)
 
 
 def _routes_table(routes: list[Int[np.ndarray, "_"]], poses: Float[np.ndarray, "views 3"]) -> pd.DataFrame:
     view = np.concatenate(routes)
-    x, y, heading = poses[view].T
-    return pd.DataFrame(
-        {
-            "pair": np.repeat(np.arange(len(routes)), [len(route) for route in routes]),
-            "view": view,
-            "x_m": x,
-            "y_m": y,
-            "heading_rad": heading,
-        }
-    )
+    pair = np.repeat(np.arange(len(routes)), [len(route) for route in routes])
+    return pd.DataFrame({"pair": pair, "view": view, **pose_columns(poses[view])})
 
 
 def _figures(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import NamedTuple
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -14,12 +14,10 @@ from sklearn.pipeline import Pipeline, make_pipeline
 from sklearn.preprocessing import StandardScaler
 
 from arena import Camera, Rotation
-from cogmap.cells import HeadingFrame, heading_errors
+from arena.angles import wrap_angle
 from cogmap.evaluation.quasi_metric import quasi_metric
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments import Conditions, Result, experiment
 from cogmap.experiments.paper.view_manifold import view_manifold
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
 from cogmap.plots import plot_barcodes, plot_compass, plot_embedding, plot_quasi_metric, plot_views
 from cogmap.threads import one_thread
 
@@ -28,20 +26,20 @@ from cogmap.threads import one_thread
 def rotation(conditions: Conditions) -> Result:
     """Fig. 1 and Table 2: spin, find the ring, and predict the heading from coordinates on the manifold."""
     walk = conditions.explore(Rotation(), Camera.perspective())
-    poses = poses_of(walk)
+    poses = walk.require("poses")
     found = view_manifold(walk.views, conditions)
     fit = predict_headings(found.embedding, poses[:, 2], conditions.seed)
-    test = fit.table[fit.table["split"] == "test"]
+    test = fit[fit["split"] == "test"]
     near = quasi_metric(found.graph, poses, conditions.seed)
     shown = np.linspace(0, len(walk) - 1, 12).astype(int)
     return Result(
         metrics={
-            **{f"{name}_correlation": value for name, value in fit.correlations.items()},
+            **{f"{split}_correlation": correlation(part) for split, part in fit.groupby("split")},
             "median_error_deg": float(np.degrees(test["error_rad"].abs().median())),
             **found.metrics(poses),
             **near.metrics,
         },
-        tables={"views": found.table(poses), "predictions": fit.table, "distances": near.pairs},
+        tables={"views": found.table(poses), "predictions": fit, "distances": near.pairs},
         figures={
             "views": plot_views(np.asarray(walk[shown].views), poses[shown], 4, panoramic=False),
             "ring": plot_embedding(found.embedding, poses[:, 2], coordinates=(0, 1)),
@@ -52,22 +50,10 @@ def rotation(conditions: Conditions) -> Result:
             "barcodes": plot_barcodes({"images of a spin": found.shape}),
         },
         captions={
-            "views": "Some of the views, with where they were taken",
             "ring": "The first two coordinates of the views of a spin, coloured by heading",
             "prediction": "Heading predicted by a small network against the true one",
-            "distances": "Distance along the manifold against distance between poses",
-            "barcodes": "Bars of loops and voids, each with the threshold above which it counts",
         },
     )
-
-
-class Fit(NamedTuple):
-    """What a network makes of manifold coordinates."""
-
-    table: pd.DataFrame
-    """`view`, `split`, `heading_rad` and `error_rad` of the prediction, a row for each view it was shown."""
-    correlations: dict[str, float]
-    """Of predicted with true heading, by split."""
 
 
 def predict_headings(
@@ -77,11 +63,11 @@ def predict_headings(
     *,
     most: int = 1800,
     decays: tuple[float, ...] = (1e-6, 1e-4, 1e-2),
-) -> Fit:
+) -> pd.DataFrame:
     """Train a small backpropagation network from coordinates to (cos θ, sin θ) on some of the views.
 
     The training views set its weights, the validation views choose the weight decay, the test views judge.
-    Errors are taken the short way round, and the correlation is that of θ with θ + error.
+    Errors are taken the short way round.
 
     Parameters
     ----------
@@ -97,6 +83,11 @@ def predict_headings(
     decays
         Weight decays, of which the validation views choose one.
 
+    Returns
+    -------
+    pandas.DataFrame
+        `view`, `split`, `heading_rad` and `error_rad` of the prediction, a row for each view it was shown.
+
     References
     ----------
     Rumelhart, Hinton & Williams (1986), Learning representations by back-propagating errors.
@@ -106,36 +97,27 @@ def predict_headings(
     ends = np.rint(np.cumsum(list(shares.values())) * len(chosen)).astype(int)[:-1]
     training, validation, _ = np.split(chosen, ends)
     target = np.column_stack([np.cos(headings), np.sin(headings)])
+    known = coordinates[training], target[training]
 
     def errors(network: Pipeline, views: np.ndarray) -> Float[np.ndarray, "_"]:
         cosine, sine = network.predict(coordinates[views]).T
-        return heading_errors(np.arctan2(sine, cosine), headings[views], HeadingFrame(0.0, mirror=False))
+        return wrap_angle(np.arctan2(sine, cosine) - headings[views])
 
+    perceptron = partial(
+        MLPRegressor, (32,), activation="tanh", solver="lbfgs", max_iter=2000, random_state=seed
+    )
     with one_thread(), warnings.catch_warnings():
         # A number of steps is as good an end as any: the validation views judge.
         warnings.simplefilter("ignore", ConvergenceWarning)
-        networks = [
-            make_pipeline(
-                StandardScaler(),
-                MLPRegressor(
-                    hidden_layer_sizes=(32,),
-                    activation="tanh",
-                    solver="lbfgs",
-                    alpha=decay,
-                    max_iter=2000,
-                    random_state=seed,
-                ),
-            ).fit(coordinates[training], target[training])
-            for decay in decays
-        ]
+        networks = [make_pipeline(StandardScaler(), perceptron(alpha=decay)).fit(*known) for decay in decays]
         best = min(networks, key=lambda network: float(np.square(errors(network, validation)).mean()))
         missed = errors(best, chosen)
     split = np.repeat(list(shares), np.diff([0, *ends, len(chosen)]))
-    table = pd.DataFrame(
+    return pd.DataFrame(
         {"view": chosen, "split": split, "heading_rad": headings[chosen], "error_rad": missed}
     )
-    correlations = {
-        str(name): float(np.corrcoef(part["heading_rad"], part["heading_rad"] + part["error_rad"])[0, 1])
-        for name, part in table.groupby("split")
-    }
-    return Fit(table, correlations)
+
+
+def correlation(fit: pd.DataFrame) -> float:
+    """Correlate the true headings with the predicted ones, as the errors tell them: θ with θ + error."""
+    return float(np.corrcoef(fit["heading_rad"], fit["heading_rad"] + fit["error_rad"])[0, 1])

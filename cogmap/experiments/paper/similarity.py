@@ -9,11 +9,8 @@ import pandas as pd
 from jaxtyping import Float, Int
 
 from arena import Brownian, Camera
-from arena.angles import wrap_angle
 from cogmap.evaluation.pose_agreement import motion_distances, pose_agreement
-from cogmap.experiments.conditions import Conditions, poses_of
-from cogmap.experiments.registry import experiment
-from cogmap.experiments.result import Result
+from cogmap.experiments import Conditions, Result, experiment, pose_errors
 from cogmap.features import BagOfWords, cosine_distances, earth_mover_distances, pixel_distances
 from cogmap.plots import plot_likeness
 
@@ -30,7 +27,7 @@ def similarity(conditions: Conditions, *, queries: int = 500, neighbours: int = 
     count = min(queries, conditions.views)
     walk = conditions.explore(Brownian(), ahead)
     fresh = conditions.explore(Brownian(), ahead, views=count, fresh=True)
-    poses, test = poses_of(walk), poses_of(fresh)
+    poses, test = walk.require("poses"), fresh.require("poses")
     words = BagOfWords(seed=conditions.seed, progress=conditions.progress)
     train = words.fit_transform(walk.views)
     distances = {
@@ -73,8 +70,7 @@ def _nearest_table(
                     "measure": name,
                     "query": np.arange(len(test)),
                     "view": found,
-                    "position_error_m": np.linalg.norm(poses[found, :2] - test[:, :2], axis=1),
-                    "heading_error_deg": np.rad2deg(np.abs(wrap_angle(poses[found, 2] - test[:, 2]))),
+                    **pose_errors(poses[found], test),
                 }
             )
             for name, found in best.items()

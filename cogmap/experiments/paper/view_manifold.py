@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from jaxtyping import Float
 
 from cogmap.cells import fit_heading_frame, heading_errors
-from cogmap.experiments.conditions import Conditions
+from cogmap.experiments import Conditions, pose_columns
 from cogmap.features import BagOfWords
 from cogmap.graph.neighbour_graph import neighbourhood_means
 from cogmap.shape import Betti, LandmarkIsomap, betti, circular_coordinate, intrinsic_dimension
@@ -52,15 +52,8 @@ class ViewManifold(NamedTuple):
     def table(self, poses: Float[np.ndarray, "views 3"]) -> pd.DataFrame:
         """Pose, coordinates and phase, turned into the true frame, of every view."""
         coordinates = {f"coordinate_{index}": values for index, values in enumerate(self.embedding.T)}
-        return pd.DataFrame(
-            {
-                "x_m": poses[:, 0],
-                "y_m": poses[:, 1],
-                "heading_rad": poses[:, 2],
-                "loop_rad": poses[:, 2] + self._turn(poses),
-                **coordinates,
-            }
-        )
+        loop = poses[:, 2] + self._turn(poses)
+        return pd.DataFrame({**pose_columns(poses), "loop_rad": loop, **coordinates})
 
     def _turn(self, poses: Float[np.ndarray, "views 3"]) -> Float[np.ndarray, "views"]:
         """Signed error in rad of the phase as a heading; NaN where there is no phase."""

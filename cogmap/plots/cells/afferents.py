@@ -3,22 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float, Int
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
+from jaxtyping import Float
 from matplotlib.figure import Figure
 
 from cogmap.inputs import check_array
-from cogmap.plots.cells.place_cells import COLOURS
-from cogmap.plots.style import (
-    QUARTERS,
-    colour_bar,
-    direction_colours,
-    heading_bar,
-    new_figure,
-    tidy,
-    tidy_room,
-)
+from cogmap.plots.style import colour_bar, draw_headings, heading_bar, new_panels, tidy, tidy_room
 
 
 def plot_afferents(
@@ -50,25 +39,20 @@ def plot_afferents(
     check_array("preferred", preferred, (None, 3))
     check_array("place", place, (len(preferred), None))
     check_array("heading", heading, (len(preferred), None))
-    figure = new_figure(13.0, 5.2)
-    above, below = figure.subplots(2, count)
+    # Evenly chosen.
+    places, directions = (np.unique(np.arange(count) * found.shape[1] // count) for found in (place, heading))
+    figure, (above, below) = new_panels(13.0, 5.2, 2, count)
     strongest = max(float(place.max()), 1e-9)
-    for axes, cell in zip(above, _chosen(place, count), strict=False):
+    for axes, cell in zip(above, places, strict=False):
         order = np.argsort(place[:, cell])
         tidy_room(axes, title=f"place cell {cell}")
         x, y = preferred[order, :2].T
-        axes.scatter(x, y, s=5, c=place[order, cell], cmap=COLOURS, vmin=0, vmax=strongest, linewidths=0)
-    colour_bar(above[-1], ScalarMappable(Normalize(0, strongest), COLOURS), "weight (Hz)")
-    for axes, cell in zip(below, _chosen(heading, count), strict=False):
+        weights = place[order, cell]
+        drawn = axes.scatter(x, y, s=5, c=weights, cmap="viridis", vmin=0, vmax=strongest, linewidths=0)
+    colour_bar(above[-1], drawn, "weight (Hz)")
+    for axes, cell in zip(below, directions, strict=False):
         tidy(axes, x="heading of the chart's view (°)", y="weight (Hz)", title=f"head-direction cell {cell}")
-        angles = preferred[:, 2]
-        axes.scatter(np.rad2deg(angles), heading[:, cell], s=4, c=direction_colours(angles), linewidths=0)
-        axes.set(xlim=(-180, 180), xticks=QUARTERS, ylim=(0, 1.05 * max(float(heading.max()), 1e-9)))
+        draw_headings(axes, preferred[:, 2], heading[:, cell], size=4.0, margin=0.0)
+        axes.set_ylim(0, 1.05 * max(float(heading.max()), 1e-9))
     heading_bar(below[-1])
     return figure
-
-
-def _chosen(weights: Float[np.ndarray, "charts cells"], count: int) -> Int[np.ndarray, "chosen"]:
-    """Take cells evenly."""
-    cells = weights.shape[1]
-    return np.unique((np.arange(count) + 0.5).astype(int) * cells // count)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import pandas as pd
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cogmap.cells.measures.heading import LEAST_VECTOR, MOST_INFORMATION
 from cogmap.cells.measures.place import LEAST_INFORMATION, MOST_DIRECTION
 from cogmap.errors import CogmapError
-from cogmap.plots.style import ABSENT, BAD, GOOD, INK, SMALL, SOFT, new_figure, tidy
+from cogmap.plots.style import ABSENT, BAD, GOOD, SMALL, SOFT, new_panels, tidy
 
 
 def plot_cell_types(cells: pd.DataFrame) -> Figure:
@@ -30,38 +29,31 @@ def plot_cell_types(cells: pd.DataFrame) -> Figure:
     CogmapError
         Without a cell.
     """
-    kinds = {
-        "place": ("in_field_direction_vector", "in-field direction vector"),
-        "heading": ("mean_vector_length", "mean vector length"),
-    }
     panel = 2.4  # inches
     names = list(dict.fromkeys(cells["population"]))
     if not names:
         raise CogmapError("no cells to draw; give a table with at least one")
     most = max(1.08 * float(cells["spatial_information"].fillna(0.0).max()), 1.0)
-    figure = new_figure(panel * max(len(names), 2) + 0.6, 2 * panel + 0.4)
-    panels = figure.subplots(2, len(names), squeeze=False, sharey=True)
+    kinds = {
+        "place": ("in_field_direction_vector", "in-field direction vector"),
+        "heading": ("mean_vector_length", "mean vector length"),
+    }
+    # Where a cell of each kind must lie to pass: from left to right, from low to high.
+    criteria = (-0.02, MOST_DIRECTION, LEAST_INFORMATION, most), (LEAST_VECTOR, 1.02, 0.0, MOST_INFORMATION)
+    width = panel * max(len(names), 2) + 0.6
+    figure, panels = new_panels(width, 2 * panel + 0.4, 2, len(names), squeeze=False, sharey=True)
     for column, name in zip(panels.T, names, strict=True):
-        for axes, (kind, (key, label)) in zip(column, kinds.items(), strict=True):
+        told = "spatial information (bit/spike)" if name == names[0] else ""
+        for axes, (kind, (key, label)), criterion in zip(column, kinds.items(), criteria, strict=True):
+            left, right, low, high = criterion
             mine = cells[cells["population"] == name]
             passing = mine[f"{kind}_passing"]
-            tidy(axes, x=label)
-            axes.set_title(f"{name}\n{passing.mean():.0%} {kind} cells", fontsize=SMALL - 1, color=INK)
-            _mark_criterion(axes, kind, most)
+            title = f"{name}\n{passing.mean():.0%} {kind} cells"
+            tidy(axes, x=label, y=told, title=title, size=SMALL - 1)
+            axes.fill_between([left, right], low, high, color=ABSENT, alpha=0.5, linewidth=0, zorder=0)
+            outline = [left, right, right, left, left], [low, low, high, high, low]
+            axes.plot(*outline, color=SOFT, linewidth=0.6)
             colours = passing.map({True: GOOD, False: BAD})
             axes.scatter(mine[key], mine["spatial_information"], s=7, c=colours, alpha=0.7, linewidths=0)
             axes.set(xlim=(-0.02, 1.02), ylim=(0, most))
-    for axes in panels[:, 0]:
-        axes.set_ylabel("spatial information (bit/spike)", fontsize=SMALL, color=INK)
     return figure
-
-
-def _mark_criterion(axes: Axes, kind: str, most: float) -> None:
-    """Shade where a cell of this kind must lie."""
-    left, right, low, high = (
-        (-0.02, MOST_DIRECTION, LEAST_INFORMATION, most)
-        if kind == "place"
-        else (LEAST_VECTOR, 1.02, 0.0, MOST_INFORMATION)
-    )
-    axes.fill_between([left, right], low, high, color=ABSENT, alpha=0.5, linewidth=0, zorder=0)
-    axes.plot([left, right, right, left, left], [low, low, high, high, low], color=SOFT, linewidth=0.6)

@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 from cogmap.cells.rates.maps import RateMaps
 from cogmap.cells.rates.tuning import Tuning
 from cogmap.errors import CogmapError
-from cogmap.plots.cells.place_cells import COLOURS
-from cogmap.plots.style import ABSENT, HUES, INK, QUARTERS, SMALL, SOFT, TINY, new_figure, tidy
+from cogmap.plots.style import ABSENT, HUES, INK, QUARTERS, SMALL, SOFT, TINY, draw_bins, new_figure, tidy
 
 THINNEST = 0.25
 """Height of a map over its width; that of a path is stretched to it."""
@@ -41,7 +40,7 @@ def plot_examples(populations: Mapping[str, Tuning], *, count: int = 6) -> Figur
         line.suptitle(name, fontsize=SMALL + 1, color=INK)
         panels = line.subplots(2, count, squeeze=False, height_ratios=[aspect, 0.45])
         firing = np.flatnonzero(np.nanmax(tuning.maps.rates, axis=(1, 2)) > 0)
-        chosen = firing[(np.arange(min(count, len(firing))) + 0.5).astype(int) * len(firing) // count]
+        chosen = firing[np.arange(min(count, len(firing))) * len(firing) // count]
         for axes in panels[:, len(chosen) :].ravel():
             axes.set_axis_off()
         for (above, below), cell in zip(panels.T, chosen, strict=False):
@@ -52,9 +51,9 @@ def plot_examples(populations: Mapping[str, Tuning], *, count: int = 6) -> Figur
 
 def _draw_map(axes: Axes, maps: RateMaps, cell: int, *, first: bool) -> None:
     peak = float(np.nanmax(maps[cell]))
-    tidy(axes, x="x (m)" if first else "", y="y (m)" if first else "")
-    axes.set_title(f"cell {cell}: {peak:.2g} Hz", fontsize=TINY, color=INK)
-    axes.pcolormesh(*maps.edges, np.ma.masked_invalid(maps[cell] / peak), cmap=COLOURS, vmin=0, vmax=1)
+    x, y = ("x (m)", "y (m)") if first else ("", "")
+    tidy(axes, x=x, y=y, title=f"cell {cell}: {peak:.2g} Hz", size=TINY)
+    draw_bins(axes, maps.edges, maps[cell] / peak, "viridis", low=0.0, high=1.0)
     if np.ptp(maps.edges.y) > THINNEST * np.ptp(maps.edges.x):
         axes.set_aspect("equal")
     axes.set_facecolor(ABSENT)

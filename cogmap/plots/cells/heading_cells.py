@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from jaxtyping import Float, Int
+from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from cogmap.errors import CogmapError
 from cogmap.plots.style import (
-    BAD,
     INK,
-    QUARTERS,
     SOFT,
     TINY,
-    colour_bar,
     direction_colours,
-    direction_scale,
-    new_figure,
+    heading_bar,
+    new_panels,
+    title_cell,
     title_sheet,
 )
 
@@ -56,12 +54,13 @@ def plot_tuning_curves(
         )
     if count < 1:
         raise CogmapError(f"count is {count}; give the number of curves to draw, at least 1")
-    cells = _chosen(statistics["preferred_direction_rad"].to_numpy(dtype=float), count)
+    ordered = np.argsort(statistics["preferred_direction_rad"].to_numpy(dtype=float), kind="stable")
+    shown = min(count, len(ordered))
+    cells = ordered[((np.arange(shown) + 0.5) * len(ordered) / shown).astype(int)]
     columns = min(6, len(cells))
     lines = -(-len(cells) // columns)
     right, bottom = pitch * (columns - 1) + 1.4, -pitch * (lines - 1) - 1.25
-    figure = new_figure(max((right + 1.55) / inch + 1.1, 6.5), (1.6 - bottom) / inch + 0.4)
-    axes = figure.add_subplot()
+    figure, axes = new_panels(max((right + 1.55) / inch + 1.1, 6.5), (1.6 - bottom) / inch + 0.4)
     axes.set_axis_off()
     for index, cell in enumerate(cells):
         centre = pitch * np.array([index % columns, -(index // columns)])
@@ -70,16 +69,8 @@ def plot_tuning_curves(
     axes.set(xlim=(-1.55, right), ylim=(bottom, 1.6), aspect="equal")
     drawn = f"{len(cells)} of {len(curves)} head-direction cells: rate (Hz) by true heading (°), mean vector"
     title_sheet(figure, drawn, statistics["passing"])
-    bar = colour_bar(axes, direction_scale(), "preferred direction (°)")
-    bar.set_ticks(QUARTERS.tolist())
+    heading_bar(axes, "preferred direction (°)")
     return figure
-
-
-def _chosen(directions: Float[np.ndarray, " cells"], count: int) -> Int[np.ndarray, " chosen"]:
-    ordered = np.argsort(directions, kind="stable")
-    count = min(count, len(ordered))
-    chosen: np.ndarray = ordered[((np.arange(count) + 0.5) * len(ordered) / count).astype(int)]
-    return chosen
 
 
 def _draw_circle(axes: Axes, centre: Float[np.ndarray, " 2"], *, named: bool) -> None:
@@ -106,12 +97,5 @@ def _draw_curve(
     tip = centre + length * np.array([np.cos(direction), np.sin(direction)])
     axes.plot(*np.stack([centre, tip], axis=1), color=INK, linewidth=1.2)
     axes.text(centre[0] + 0.74, centre[1] + 0.74, f"{highest:.1f} Hz", fontsize=TINY - 1, color=INK)
-    axes.text(
-        centre[0],
-        centre[1] + 1.22,
-        f"vector {length:.2f}, {np.rad2deg(direction):.0f}°".replace("-", "−") if length >= 0 else "silent",
-        ha="center",
-        va="bottom",
-        fontsize=TINY,
-        color=INK if shown["passing"] else BAD,
-    )
+    said = f"vector {length:.2f}, {np.rad2deg(direction):.0f}°".replace("-", "−") if length >= 0 else "silent"
+    title_cell(axes, centre[0], centre[1] + 1.22, said, passing=bool(shown["passing"]))

@@ -6,7 +6,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from cogmap.errors import CogmapError
-from cogmap.plots.style import BAD, GOOD, SOFT, new_figure, tidy, tidy_legend
+from cogmap.plots.style import BAD, GOOD, SOFT, new_panels, tidy, tidy_legend
 
 PANELS = {
     "passing, covered (share)": {
@@ -35,20 +35,16 @@ def plot_courses(growth: pd.DataFrame, silencing: pd.DataFrame) -> Figure:
     """
     if growth.empty or silencing.empty:
         raise CogmapError(f"{len(growth)} and {len(silencing)} rows; give at least one of each")
-    figure = new_figure(11.0, 5.6)
-    panels = figure.subplots(2, len(PANELS))
+    figure, panels = new_panels(11.0, 5.6, 2, len(PANELS))
     lines = ((growth, "views", "views seen"), (silencing, "silent", "charts silenced (share)"))
     for line, (rows, along, name) in zip(panels, lines, strict=True):
         for axes, (label, curves) in zip(line, PANELS.items(), strict=True):
             tidy(axes, x=name, y=label)
             for column, (curve, colour, style) in curves.items():
-                axes.plot(
-                    rows[along], rows[column], style, color=colour, marker="o", markersize=3, label=curve
-                )
-            top = (
-                1.05 if label.endswith("(share)") else 1.1 * max(float(rows[list(curves)].max().max()), 1e-9)
-            )
-            axes.set_ylim(0, top)
+                points = rows[along], rows[column]
+                axes.plot(*points, style, color=colour, marker="o", markersize=3, label=curve)
+            highest = max(float(rows[list(curves)].max().max()), 1e-9)
+            axes.set_ylim(0, 1.05 if label.endswith("(share)") else 1.1 * highest)
             if rows is growth:
                 axes.set_xscale("log")
             tidy_legend(axes)

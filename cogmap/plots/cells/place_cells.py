@@ -7,14 +7,12 @@ import pandas as pd
 from jaxtyping import Float, Int
 from matplotlib import colormaps
 from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from cogmap.cells.rates.maps import RateMaps
 from cogmap.errors import CogmapError
-from cogmap.plots.style import ABSENT, BAD, INK, TINY, colour_bar, new_figure, tidy, title_sheet
+from cogmap.plots.style import ABSENT, colour_bar, new_panels, tidy, title_cell, title_sheet
 
 COLOURS = colormaps["viridis"].with_extremes(bad=ABSENT)
 
@@ -50,8 +48,8 @@ def plot_rate_maps(maps: RateMaps, statistics: pd.DataFrame, count: int = 40) ->
     inch = (high[0] - low[0]) / panel
     pitch = high - low + np.array([gap, gap + title]) * inch
     columns = max(len(line) for line in lines)
-    figure = new_figure(max(columns * (panel + gap) + 1.2, 6.5), len(lines) * pitch[1] / inch + 0.6)
-    axes = figure.add_subplot()
+    width = max(columns * (panel + gap) + 1.2, 6.5)
+    figure, axes = new_panels(width, len(lines) * pitch[1] / inch + 0.6)
     tidy(axes, x="x (m)", y="y (m)")
     axes.spines[:].set_visible(False)
     for row, line in enumerate(lines):
@@ -69,7 +67,7 @@ def plot_rate_maps(maps: RateMaps, statistics: pd.DataFrame, count: int = 40) ->
     )
     drawn = f"{len(axes.images)} of {len(maps)} place cells: peak rate and spatial information"
     title_sheet(figure, drawn, statistics["passing"])
-    colour_bar(axes, ScalarMappable(Normalize(0, 1), COLOURS), "rate (fraction of peak)")
+    colour_bar(axes, axes.images[0], "rate (fraction of peak)")
     return figure
 
 
@@ -100,25 +98,11 @@ def _draw_map(
     (x0, x1), (y0, y1) = (along[[0, -1]] + by for along, by in zip(maps.edges, shift, strict=True))
     shown = statistics.iloc[cell]
     peak, information = float(shown["peak_rate_hz"]), float(shown["spatial_information"])
-    axes.imshow(
-        maps[cell] / (peak if peak > 0 else 1.0),
-        cmap=COLOURS,
-        vmin=0,
-        vmax=1,
-        origin="lower",
-        extent=(x0, x1, y0, y1),
-        interpolation="nearest",
-        label=f"cell {cell}",
-    )
-    axes.text(
-        (x0 + x1) / 2,
-        y1 + 0.03 * inch,
-        f"{peak:.1f} Hz, {information:.2f} bit/spike" if peak > 0 else "silent",
-        ha="center",
-        va="bottom",
-        fontsize=TINY,
-        color=INK if shown["passing"] else BAD,
-    )
+    part = maps[cell] / (peak if peak > 0 else 1.0)
+    drawn = axes.imshow(part, cmap=COLOURS, vmin=0, vmax=1, origin="lower", extent=(x0, x1, y0, y1))
+    drawn.set(interpolation="nearest", label=f"cell {cell}")
+    said = f"{peak:.1f} Hz, {information:.2f} bit/spike" if peak > 0 else "silent"
+    title_cell(axes, (x0 + x1) / 2, y1 + 0.03 * inch, said, passing=bool(shown["passing"]))
 
 
 def _ticks(low: float, high: float) -> Float[np.ndarray, " ticks"]:

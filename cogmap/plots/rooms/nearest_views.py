@@ -49,11 +49,7 @@ def _draw_errors(axes: Axes, nearest: pd.DataFrame, column: str, label: str) -> 
     axes.set_xscale("log")
     for rank, (name, rows) in enumerate(nearest.groupby("measure", sort=False)):
         values = rows[column].clip(lower=1e-3)
-        axes.ecdf(
-            values,
-            color=colormaps["tab10"](rank),
-            linewidth=1.5,
-            label=f"{str(name).replace('_', ' ')}: median {values.median():.2g}",
-        )
+        label = f"{str(name).replace('_', ' ')}: median {values.median():.2g}"
+        axes.ecdf(values, color=colormaps["tab10"](rank), linewidth=1.5, label=label)
     axes.set_ylim(0, 1)
     tidy_legend(axes, loc="lower right")

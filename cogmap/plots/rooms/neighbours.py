@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
-from cogmap.plots.style import BAD, INK, TINY, new_figure
+from cogmap.plots.style import BAD, INK, TINY, new_panels
 
 
 def plot_neighbours(
@@ -40,8 +40,7 @@ def plot_neighbours(
     check_array("poses", poses, (rows, 3))
     check_array("near", near.reshape(-1, 3), (rows * columns, 3))
     panel = (width - 0.4) / (columns + 1) * queries.shape[1] / queries.shape[2] + 0.32
-    figure = new_figure(width, max(2.0, rows * panel))
-    grid = figure.subplots(rows, columns + 1, squeeze=False)
+    figure, grid = new_panels(width, max(2.0, rows * panel), rows, columns + 1, squeeze=False)
     for row, panels in enumerate(grid):
         images, said = [queries[row], *neighbours[row]], [poses[row], *near[row]]
         for column, (axes, image, pose) in enumerate(zip(panels, images, said, strict=True)):

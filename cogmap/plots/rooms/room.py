@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import shapely
 from jaxtyping import Float
@@ -17,7 +19,7 @@ from arena.rooms.materials import texture
 from arena.rooms.parts import Solid, Wall
 from arena.smell.odour import FAINTEST
 from cogmap.inputs import check_array
-from cogmap.plots.style import INK, SMALL, SOFT, TINY, direction_colours, new_figure, tidy_room
+from cogmap.plots.style import INK, SOFT, TINY, direction_colours, new_panels, sheet_legend, tidy_room
 
 
 def plot_room(arena: Arena, poses: Float[np.ndarray, "views 3"] | None = None) -> Figure:
@@ -44,10 +46,7 @@ def plot_room(arena: Arena, poses: Float[np.ndarray, "views 3"] | None = None) -
     """
     if poses is not None:
         check_array("poses", poses, (None, 3))
-    x0, y0, x1, y1 = arena.bounds
-    width = 8.0 if arena.light is None else 7.0
-    figure = new_figure(8.0, np.clip(width * (y1 - y0) / (x1 - x0) + 0.4, 2.0, 12.0))
-    axes = figure.add_subplot()
+    figure, axes = new_panels(8.0, height_of(arena, 8.0 if arena.light is None else 7.0))
     tidy_room(axes, title=f"{arena.name}: from one odour contour to the next the concentration halves")
     axes.title.set_parse_math(False)
     draw_surfaces(axes, arena)
@@ -56,10 +55,29 @@ def plot_room(arena: Arena, poses: Float[np.ndarray, "views 3"] | None = None) -
         _draw_light(axes, arena.light)
     if poses is not None:
         _draw_path(axes, poses)
-    margin = 0.05 * max(x1 - x0, y1 - y0)
-    axes.set(xlim=(x0 - margin, x1 + margin), ylim=(y0 - margin, y1 + margin))
-    figure.legend(loc="outside lower center", ncols=5, fontsize=SMALL, labelcolor=INK, frameon=False)
+    x0, y0, x1, y1 = arena.bounds
+    frame_room(axes, arena.bounds, 0.05 * max(x1 - x0, y1 - y0))
+    sheet_legend(figure, 5)
     return figure
+
+
+def height_of(arena: Arena, width: float) -> float:
+    """How high a figure must be for a plan of this width, in inches."""
+    x0, y0, x1, y1 = arena.bounds
+    return float(np.clip(width * (y1 - y0) / (x1 - x0) + 0.4, 2.0, 12.0))
+
+
+def frame_room(axes: Axes, bounds: tuple[float, float, float, float], margin: float) -> None:
+    """Show what is within bounds (x0, y0, x1, y1) and a margin around them, m."""
+    x0, y0, x1, y1 = bounds
+    axes.set(xlim=(x0 - margin, x1 + margin), ylim=(y0 - margin, y1 + margin))
+
+
+def draw_arrows(axes: Axes, poses: Float[np.ndarray, "views 3"], length: float, **look: Any) -> None:
+    """Draw an arrow of this length (m) from each pose to where the body looks."""
+    x, y, heading = poses.T
+    u, v = length * np.cos(heading), length * np.sin(heading)
+    axes.quiver(x, y, u, v, angles="xy", scale_units="xy", scale=1, **look)
 
 
 def draw_surfaces(axes: Axes, arena: Arena) -> None:
@@ -112,19 +130,10 @@ def _draw_solid(axes: Axes, solid: Solid) -> None:
                 _name_side(axes, side, np.array([along[1], -along[0]]) / np.hypot(*along), name)
     width, depth = np.ptp(solid.outline, axis=0)
     middle = shapely.Polygon(solid.outline).representative_point()
-    axes.text(
-        middle.x,
-        middle.y,
-        said,
-        ha="center",
-        va="center",
-        rotation=90 if depth > width else 0,
-        fontsize=TINY,
-        color="white" if np.dot(top_colour, (0.3, 0.6, 0.1)) < 0.5 else INK,
-        path_effects=[withStroke(linewidth=2, foreground=top_colour)],
-        clip_on=True,
-        zorder=7,
-    )
+    written = axes.text(middle.x, middle.y, said, ha="center", va="center", fontsize=TINY, clip_on=True)
+    written.set(rotation=90 if depth > width else 0, zorder=7)
+    written.set_color("white" if np.dot(top_colour, (0.3, 0.6, 0.1)) < 0.5 else INK)
+    written.set_path_effects([withStroke(linewidth=2, foreground=top_colour)])
 
 
 def _name_side(
@@ -134,45 +143,22 @@ def _name_side(
     dx, dy = ends[1] - ends[0]
     # Never upside down.
     turn = np.rad2deg(np.arctan2(dy, dx)) % 180
-    axes.annotate(
-        said,
-        tuple(ends.mean(axis=0).tolist()),
-        tuple((10 * outward).tolist()),
-        textcoords="offset points",
-        rotation=turn - 180 if turn > 90.5 else turn,
-        rotation_mode="anchor",
-        ha="center",
-        va="center_baseline",
-        fontsize=TINY,
-        color=INK,
-        zorder=7,
-    )
+    middle, away = tuple(ends.mean(axis=0).tolist()), tuple((10 * outward).tolist())
+    written = axes.annotate(said, middle, away, textcoords="offset points", fontsize=TINY, color=INK)
+    written.set(rotation=turn - 180 if turn > 90.5 else turn, rotation_mode="anchor", zorder=7)
+    written.set(ha="center", va="center_baseline")
 
 
 def _draw_light(axes: Axes, light: Light) -> None:
     # Right of the room.
     beside = (1.07, 0.8)
     across, up = (light.direction[:2] / np.hypot(*light.direction[:2])).tolist()
-    axes.annotate(
-        "",
-        beside,
-        (40 * across, 40 * up),
-        xycoords="axes fraction",
-        textcoords="offset points",
-        arrowprops={"arrowstyle": "-|>", "color": INK},
-    )
+    units: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points"}
+    axes.annotate("", beside, (40 * across, 40 * up), arrowprops={"arrowstyle": "-|>", "color": INK}, **units)
     said = f"light from {light.azimuth_deg:g}°,\n{light.elevation_deg:g}° up,\nstrength {light.strength:g}"
-    axes.annotate(
-        said.replace("-", "−"),
-        beside,
-        (0, -8 if up > 0 else 8),
-        xycoords="axes fraction",
-        textcoords="offset points",
-        ha="center",
-        va="top" if up > 0 else "bottom",
-        fontsize=TINY,
-        color=INK,
-    )
+    said = said.replace("-", "−")
+    away, end = (-8, "top") if up > 0 else (8, "bottom")
+    axes.annotate(said, beside, (0, away), ha="center", va=end, fontsize=TINY, color=INK, **units)
 
 
 def _draw_odours(axes: Axes, arena: Arena) -> None:
@@ -194,17 +180,9 @@ def _draw_odours(axes: Axes, arena: Arena) -> None:
         reached = levels[(levels > np.nanmin(odour)) & (levels < np.nanmax(odour))]
         if len(reached):
             axes.contour(x, y, odour, reached, colors=[hue], linewidths=0.9, zorder=2)
-        axes.plot(
-            *source.position,
-            "*",
-            color=hue,
-            markeredgecolor=INK,
-            markeredgewidth=0.6,
-            markersize=12,
-            linestyle="none",
-            zorder=6,
-            label=f"odour source {index}",
-        )
+        name = f"odour source {index}"
+        (star,) = axes.plot(*source.position, "*", color=hue, markersize=12, zorder=6, label=name)
+        star.set(markeredgecolor=INK, markeredgewidth=0.6)
 
 
 def _draw_path(axes: Axes, poses: Float[np.ndarray, "views 3"]) -> None:

@@ -12,8 +12,8 @@ from matplotlib.patches import Polygon
 from arena.bodies.disc import Disc
 from arena.rooms.arena import Arena
 from cogmap.inputs import check_array
-from cogmap.plots.rooms.room import draw_surfaces
-from cogmap.plots.style import BAD, GOOD, INK, SMALL, new_figure, tidy_room
+from cogmap.plots.rooms.room import draw_arrows, draw_surfaces, frame_room
+from cogmap.plots.style import BAD, GOOD, INK, new_panels, sheet_legend, tidy_room
 
 MINE, THEIRS, START, GOAL = "visual roadmap", "OMPL's PRM", "start", "goal"
 
@@ -46,11 +46,11 @@ def plot_routes(
     rows = max(1, -(-len(routes) // columns))
     x0, y0, x1, y1 = arena.walkable.bounds
     width = 12.0 / columns
-    figure = new_figure(12.0, rows * (width * (y1 - y0) / (x1 - x0) + 0.4) + 0.4)
-    grid = figure.subplots(rows, columns, squeeze=False).ravel()
-    for axes in grid[len(routes) :]:
+    height = rows * (width * (y1 - y0) / (x1 - x0) + 0.4) + 0.4
+    figure, grid = new_panels(12.0, height, rows, columns, squeeze=False)
+    for axes in grid.flat[len(routes) :]:
         axes.set_axis_off()
-    for axes, (mine, theirs) in zip(grid, routes, strict=False):
+    for axes, (mine, theirs) in zip(grid.flat, routes, strict=False):
         tidy_room(axes, title=f"{len(mine) - 2} views on the way")
         draw_surfaces(axes, arena)
         for text in axes.texts:
@@ -58,19 +58,11 @@ def plot_routes(
         _draw_route(axes, mine)
         if theirs is not None:
             axes.plot(*theirs[:, :2].T, "--", color=BAD, linewidth=1.3, zorder=8, label=THEIRS)
-        axes.set(xlim=(x0 - 0.1, x1 + 0.1), ylim=(y0 - 0.1, y1 + 0.1))
+        frame_room(axes, arena.walkable.bounds, 0.1)
     if routes:
-        drawn = [pair for axes in grid for pair in zip(*axes.get_legend_handles_labels(), strict=True)]
+        drawn = [pair for axes in grid.flat for pair in zip(*axes.get_legend_handles_labels(), strict=True)]
         known = {label: handle for handle, label in drawn if label in (MINE, THEIRS, START, GOAL)}
-        figure.legend(
-            known.values(),
-            known.keys(),
-            loc="outside lower center",
-            ncols=4,
-            fontsize=SMALL,
-            labelcolor=INK,
-            frameon=False,
-        )
+        sheet_legend(figure, 4, handles=known.values(), labels=known.keys())
     return figure
 
 
@@ -78,19 +70,7 @@ def _draw_route(axes: Axes, path: Float[np.ndarray, "steps 3"]) -> None:
     swept = shapely.LineString(path[:, :2]).buffer(Disc().radius)
     outline = shapely.get_coordinates(swept.exterior)
     axes.add_patch(Polygon(outline, facecolor=GOOD, alpha=0.15, linewidth=0, zorder=1.5))
-    x, y, heading = path.T
-    axes.plot(x, y, color=GOOD, linewidth=1.3, zorder=8, label=MINE)
-    axes.quiver(
-        x,
-        y,
-        0.2 * np.cos(heading),
-        0.2 * np.sin(heading),
-        angles="xy",
-        scale_units="xy",
-        scale=1,
-        color=GOOD,
-        width=0.005,
-        zorder=8.5,
-    )
-    axes.plot(*path[0, :2], "o", color=INK, markersize=7, zorder=9, linestyle="none", label=START)
-    axes.plot(*path[-1, :2], "s", color=INK, markersize=7, zorder=9, linestyle="none", label=GOAL)
+    axes.plot(*path[:, :2].T, color=GOOD, linewidth=1.3, zorder=8, label=MINE)
+    draw_arrows(axes, path, 0.2, color=GOOD, width=0.005, zorder=8.5)
+    for pose, mark, name in ((path[0], "o", START), (path[-1], "s", GOAL)):
+        axes.plot(*pose[:2], mark, color=INK, markersize=7, zorder=9, label=name)

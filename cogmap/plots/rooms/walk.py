@@ -12,16 +12,8 @@ from matplotlib.figure import Figure
 
 from arena.rooms.arena import Arena
 from cogmap.inputs import check_array
-from cogmap.plots.rooms.room import draw_surfaces
-from cogmap.plots.style import (
-    INK,
-    QUARTERS,
-    colour_bar,
-    direction_colours,
-    direction_scale,
-    new_figure,
-    tidy_room,
-)
+from cogmap.plots.rooms.room import draw_surfaces, frame_room, height_of
+from cogmap.plots.style import INK, colour_bar, direction_colours, heading_bar, new_panels, tidy_room
 
 
 def plot_walk(
@@ -48,18 +40,16 @@ def plot_walk(
     """
     check_array("times", times, (None,))
     check_array("poses", poses, (len(times), 3))
+    figure, (left, right) = new_panels(12.0, height_of(arena, 6.0), 1, 2)
     x0, y0, x1, y1 = arena.bounds
-    width = 6.0
-    figure = new_figure(2 * width, float(np.clip(width * (y1 - y0) / (x1 - x0) + 0.4, 2.0, 12.0)))
-    left, right = figure.subplots(1, 2)
+    extent = max(x1 - x0, y1 - y0)
     # Of more headings nothing could be seen.
     chosen = poses[:: -(-len(poses) // 3000)]
     titles = f"{arena.name}: the way of {len(poses):,} views", f"where it looks in {len(chosen):,} of them"
     for axes, title in zip((left, right), titles, strict=True):
         tidy_room(axes, title=title)
         draw_surfaces(axes, arena)
-        margin = 0.03 * max(x1 - x0, y1 - y0)
-        axes.set(xlim=(x0 - margin, x1 + margin), ylim=(y0 - margin, y1 + margin))
+        frame_room(axes, arena.bounds, 0.03 * extent)
     clock = ScalarMappable(Normalize(times[0], times[-1]), colormaps["viridis"])
     ways = np.stack([poses[:-1, :2], poses[1:, :2]], axis=1)
     left.add_collection(
@@ -67,9 +57,9 @@ def plot_walk(
     )
     left.plot(*poses[0, :2], "o", color=INK, markersize=4, zorder=2)
     colour_bar(left, clock, "time (s)")
-    stroke = 0.02 * max(x1 - x0, y1 - y0) * np.stack([np.cos(chosen[:, 2]), np.sin(chosen[:, 2])], axis=1)
+    stroke = 0.02 * extent * np.stack([np.cos(chosen[:, 2]), np.sin(chosen[:, 2])], axis=1)
     strokes = np.stack([chosen[:, :2], chosen[:, :2] + stroke], axis=1)
     colours = direction_colours(chosen[:, 2])
     right.add_collection(LineCollection(list(strokes), colors=colours, linewidths=0.7, zorder=1))
-    colour_bar(right, direction_scale(), "heading (°)").set_ticks(QUARTERS.tolist())
+    heading_bar(right)
     return figure

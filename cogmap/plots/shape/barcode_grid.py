@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, NullLocator, StrMethodFormatter
 
 from cogmap.errors import CogmapError
-from cogmap.plots.style import BAD, GOOD, INK, SMALL, SOFT, new_figure, tidy
+from cogmap.plots.shape.barcodes import draw_bars, limit_of
+from cogmap.plots.style import BAD, GOOD, INK, SMALL, new_panels, plain_ticks, tidy
 from cogmap.shape.homology import Betti
 
 LOOPS, VOIDS = 6, 4
@@ -46,10 +45,12 @@ def plot_barcode_grid(
         raise CogmapError(f"the rooms have the clouds {shapes}; give each room the same, and at least one")
     if list(results) != list(expected):
         raise CogmapError(f"results of {list(results)}, expected of {list(expected)}; give the same rooms")
-    figure = new_figure(width * len(clouds) + 0.5, height * len(results) + 0.9)
-    panels = figure.subplots(len(results), len(clouds), squeeze=False)
+    rows, columns = len(results), len(clouds)
+    figure, panels = new_panels(width * columns + 0.5, height * rows + 0.9, rows, columns, squeeze=False)
     for column, name in zip(panels.T, clouds, strict=True):
-        limit = _limit([results[room][name] for room in results])
+        found = [result[name] for result in results.values()]
+        # A column without any cloud has an axis too.
+        limit = limit_of([result for result in found if result is not None], (1, 2), 2.0)
         for axes, room in zip(column, results, strict=True):
             title = _draw(axes, results[room][name], expected[room][name], limit)
             title = f"{name.replace('_', ' ')}\n{title}" if axes is column[0] else title
@@ -57,38 +58,23 @@ def plot_barcode_grid(
         column[-1].set_xlabel("π = death / birth, no unit", fontsize=SMALL, color=INK)
     for axes, room in zip(panels[:, 0], results, strict=True):
         axes.set_ylabel(room.replace("_", " "), fontsize=SMALL, color=INK)
-    figure.suptitle(
-        "Betti numbers; loops (blue) above voids (violet), dashed what a bar must exceed to count",
-        fontsize=SMALL + 1,
-        color=INK,
-    )
+    title = "Betti numbers; loops (blue) above voids (violet), dashed what a bar must exceed to count"
+    figure.suptitle(title, fontsize=SMALL + 1, color=INK)
     return figure
-
-
-def _limit(results: Sequence[Betti | None]) -> float:
-    known = [result for result in results if result is not None]
-    values = [np.append(result.ratios[d], result.thresholds[d]) for result in known for d in (1, 2)]
-    together = np.concatenate([*values, [2.0]])
-    return 1.15 * float(together[np.isfinite(together)].max())
 
 
 def _draw(axes: Axes, result: Betti | None, expected: tuple[int, ...], limit: float) -> str:
     # A long axis has room for fewer.
-    ticks = (1, 1.5, 2, 3, 5, 10, 30, 100) if limit < 15 else (1, 2, 5, 10, 30, 100)
+    ticks = (1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 30.0, 100.0) if limit < 15 else (1.0, 2.0, 5.0, 10.0, 30.0, 100.0)
     right = result is not None and result.numbers[: len(expected)] == expected
     tidy(axes, title=" ")
     axes.title.set_color(INK if right else BAD)
-    axes.set_xscale("log")
-    axes.set(yticks=[], xlim=(1, limit), ylim=(LOOPS + VOIDS - 0.2, -0.8))
-    axes.xaxis.set_major_locator(FixedLocator(ticks))
-    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set(xscale="log", yticks=[], xlim=(1, limit), ylim=(LOOPS + VOIDS - 0.2, -0.8))
+    plain_ticks(axes.xaxis, ticks)
     if result is None:
         return f"nothing, not {list(expected)}"
     for dimension, first, count, colour in ((1, 0, LOOPS, GOOD), (2, LOOPS, VOIDS, "#7b4fa3")):
-        threshold, shown = result.thresholds[dimension], np.minimum(result.ratios[dimension][:count], limit)
-        colours = [colour if rank < result.numbers[dimension] else SOFT for rank in range(len(shown))]
-        axes.barh(first + np.arange(len(shown)), shown - 1, left=1, height=0.7, color=colours)
+        draw_bars(axes, result, dimension, count, colour, first=first)
         rows = [first - 0.5, first + count - 0.5]
-        axes.plot([threshold] * 2, rows, color=BAD, linewidth=1.2, linestyle="--")
+        axes.plot([result.thresholds[dimension]] * 2, rows, color=BAD, linewidth=1.2, linestyle="--")
     return f"{list(result.numbers)}" + ("" if right else f", not {list(expected)}")

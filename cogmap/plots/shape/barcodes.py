@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, NullLocator, StrMethodFormatter
 
 from cogmap.errors import CogmapError
-from cogmap.plots.style import BAD, GOOD, INK, SMALL, SOFT, TINY, new_figure, tidy
+from cogmap.plots.style import BAD, GOOD, INK, SMALL, SOFT, TINY, new_figure, plain_ticks, tidy
 from cogmap.shape.homology import Betti
 
 
@@ -39,7 +39,7 @@ def plot_barcodes(results: Mapping[str, Betti], *, bars: int = 12) -> Figure:
         )
     figure = new_figure(10.0, 2.2 * len(results))
     lines = figure.subfigures(len(results), 1, squeeze=False, hspace=0.06)[:, 0]
-    limits = [_limit(results, dimension) for dimension in range(1, highest + 1)]
+    limits = [limit_of(results.values(), (dimension,)) for dimension in range(1, highest + 1)]
     for line, (name, result) in zip(lines, results.items(), strict=True):
         line.suptitle(f"{name}: {_summary(result)}", fontsize=SMALL + 1, color=INK)
         panels = line.subplots(1, highest, squeeze=False)[0]
@@ -58,43 +58,38 @@ def _summary(result: Betti) -> str:
     )
 
 
-def _limit(results: Mapping[str, Betti], dimension: int) -> float:
+def limit_of(results: Iterable[Betti], dimensions: Iterable[int], least: float = 1.0) -> float:
+    """Where an axis ends that holds all ratios and thresholds of these dimensions, the endless ones aside."""
     found = [
         np.append(result.ratios[dimension], result.thresholds[dimension])
-        for result in results.values()
+        for result in results
+        for dimension in dimensions
         if dimension < len(result.numbers)
     ]
-    together = np.concatenate(found)
+    together = np.concatenate([*found, [least]])
     return 1.15 * float(together[np.isfinite(together)].max())
 
 
+def draw_bars(axes: Axes, result: Betti, dimension: int, count: int, colour: str, *, first: int = 0) -> int:
+    """Draw the largest bars as far as the axis reaches, those that count in this colour, and count them."""
+    shown = np.minimum(result.ratios[dimension][:count], axes.get_xlim()[1])
+    colours = [colour if rank < result.numbers[dimension] else SOFT for rank in range(len(shown))]
+    axes.barh(first + np.arange(len(shown)), shown - 1, left=1, height=0.7, color=colours)
+    return len(shown)
+
+
 def _draw_bars(axes: Axes, result: Betti, dimension: int, limit: float, most: int) -> None:
-    fine_ticks = (1, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2, 2.3)
-    ticks = (1, 1.2, 1.5, 2, 3, 5, 10, 20, 50, 100)
-    found, threshold = result.ratios[dimension], result.thresholds[dimension]
-    shown = np.minimum(found[:most], limit)
-    colours = [GOOD if rank < result.numbers[dimension] else SOFT for rank in range(len(shown))]
-    tidy(
-        axes,
-        x=f"π of H{dimension} ({'loops' if dimension == 1 else 'voids'}), death / birth, no unit",
-        y="bar, largest first",
-    )
-    axes.set_xscale("log")
-    axes.barh(np.arange(len(shown)), shown - 1, left=1, height=0.7, color=colours)
+    fine_ticks = (1.0, 1.1, 1.2, 1.3, 1.4, 1.6, 1.8, 2.0, 2.3)
+    ticks = (1.0, 1.2, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+    threshold, holes = result.thresholds[dimension], "loops" if dimension == 1 else "voids"
+    tidy(axes, x=f"π of H{dimension} ({holes}), death / birth, no unit", y="bar, largest first")
+    axes.set(xscale="log", xlim=(1, limit))
+    shown = draw_bars(axes, result, dimension, most, GOOD)
     axes.axvline(threshold, color=BAD, linewidth=1.2, linestyle="--")
-    axes.annotate(
-        f"threshold {threshold:.2f}",
-        (threshold, 1),
-        (3, -2),
-        xycoords=axes.get_xaxis_transform(),
-        textcoords="offset points",
-        va="top",
-        fontsize=TINY,
-        color=BAD,
-    )
-    axes.xaxis.set_major_locator(FixedLocator(fine_ticks if limit < 2.5 else ticks))
-    axes.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.set(xlim=(1, limit), ylim=(max(len(shown), 3) - 0.4, -1.6), yticks=[])
-    if not len(shown):
+    said = f"threshold {threshold:.2f}"
+    units: dict[str, Any] = {"xycoords": axes.get_xaxis_transform(), "textcoords": "offset points"}
+    axes.annotate(said, (threshold, 1), (3, -2), va="top", fontsize=TINY, color=BAD, **units)
+    plain_ticks(axes.xaxis, fine_ticks if limit < 2.5 else ticks)
+    axes.set(ylim=(max(shown, 3) - 0.4, -1.6), yticks=[])
+    if not shown:
         axes.text(0.5, 0.4, "no bars", transform=axes.transAxes, fontsize=SMALL, color=INK)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
-from cogmap.plots.style import INK, SMALL, TINY, colour_bar, direction_colours, heading_bar, new_figure, tidy
+from cogmap.plots.style import INK, SMALL, TINY, colour_bar, direction_colours, heading_bar, new_panels, tidy
 
 
 def plot_embedding(
@@ -58,10 +58,9 @@ def plot_embedding(
     for name, values in others.items():
         check_array(name, values, (len(embedding),))
     chosen = np.linspace(0, len(embedding) - 1, min(len(embedding), most)).astype(int)
-    figure = new_figure(5.2 * (1 + len(others)), 4.6)
-    panels = figure.subplots(
-        1, 1 + len(others), squeeze=False, subplot_kw={"projection": "3d"} if components == 3 else {}
-    )[0]
+    kind = {"projection": "3d"} if components == 3 else {}
+    columns = 1 + len(others)
+    figure, (panels,) = new_panels(5.2 * columns, 4.6, 1, columns, squeeze=False, subplot_kw=kind)
     points = embedding[chosen][:, list(coordinates)].T
     names = [f"coordinate {item + 1} (no unit)" for item in coordinates]
     _draw(panels[0], points, names, direction_colours(headings[chosen]))

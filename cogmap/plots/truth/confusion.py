@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
 import pandas as pd
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 from cogmap.cells.rates.bins import bin_edges, means_by_bin
 from cogmap.errors import CogmapError
-from cogmap.plots.style import ABSENT, colour_bar, new_figure, tidy_room
+from cogmap.plots.style import colour_bar, draw_bins, new_panels, tidy_room
 
 
 def plot_confusion(rooms: Mapping[str, pd.DataFrame]) -> Figure:
@@ -29,18 +27,14 @@ def plot_confusion(rooms: Mapping[str, pd.DataFrame]) -> Figure:
     """
     if not rooms:
         raise CogmapError("no rooms to draw; give at least one table")
-    figure = new_figure(5.4 * len(rooms), 3.8)
-    colours = colormaps["magma_r"].with_extremes(bad=ABSENT)
-    for axes, (name, views) in zip(
-        figure.subplots(1, len(rooms), squeeze=False)[0], rooms.items(), strict=True
-    ):
+    figure, panels = new_panels(5.4 * len(rooms), 3.8, 1, len(rooms), squeeze=False)
+    for axes, (name, views) in zip(panels[0], rooms.items(), strict=True):
         positions = views[["x_m", "y_m"]].to_numpy()
         edges = bin_edges(positions, 0.25)
         ny, nx = edges.shape
         share = means_by_bin(edges.bin_of(positions), ny * nx, views[["confused"]].to_numpy(float))
         rate = 100 * views["confused"].mean()
         tidy_room(axes, title=f"{name.replace('_', ' ')}: {rate:.1f} % of {len(views):,} views confused")
-        image = np.ma.masked_invalid(share.reshape(ny, nx))
-        drawn = axes.pcolormesh(*edges, image, cmap=colours, vmin=0, vmax=1)
+        drawn = draw_bins(axes, edges, share.reshape(ny, nx), "magma_r", low=0.0, high=1.0)
         colour_bar(axes, drawn, "share confused")
     return figure

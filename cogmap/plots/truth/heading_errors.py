@@ -4,27 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 from jaxtyping import Float
-from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from arena.angles import wrap_angle
 from cogmap.cells.rates.bins import bin_edges, means_by_bin
 from cogmap.inputs import check_array
 from cogmap.plots.style import (
-    ABSENT,
-    BAD,
-    GOOD,
     INK,
     QUARTERS,
-    SOFT,
     colour_bar,
     direction_colours,
-    new_figure,
+    draw_bins,
+    new_panels,
     tidy,
-    tidy_legend,
     tidy_room,
 )
+from cogmap.plots.truth.errors import draw_agreement, draw_sizes
 
 
 def plot_compass(
@@ -58,38 +53,16 @@ def plot_compass(
         check_array("positions", positions, (len(headings_estimated), 2))
     error = np.exp(1j * (headings_estimated.astype(float) - headings_true))
     widths = [1.0, 1.0] if positions is None else [1.0, 1.0, 1.45]
-    figure = new_figure(3.5 * sum(widths), 3.7)
-    left, middle, *right = figure.subplots(1, len(widths), width_ratios=widths)
-    _draw_agreement(left, headings_estimated, headings_true)
-    _draw_sizes(middle, np.rad2deg(np.abs(np.angle(error))))
+    figure, panels = new_panels(3.5 * sum(widths), 3.7, 1, len(widths), width_ratios=widths)
+    left, middle, *right = panels
+    tidy(left, x="true heading (°)", y="learnt heading, aligned (°)", title="learnt against true heading")
+    draw_agreement(left, headings_true, headings_estimated, direction_colours(headings_estimated))
+    left.set(xticks=QUARTERS, yticks=QUARTERS)
+    tidy(middle, x="size of the heading error (°)", y="views", title=f"{len(error):,} views")
+    draw_sizes(middle, np.rad2deg(np.abs(np.angle(error))), "°", 3.0)
     if positions is not None:
         _draw_room(right[0], error, positions)
     return figure
-
-
-def _degrees(angles: Float[np.ndarray, " views"]) -> Float[np.ndarray, " views"]:
-    return np.asarray(np.rad2deg(wrap_angle(angles.astype(float))))
-
-
-def _draw_agreement(
-    axes: Axes, estimated: Float[np.ndarray, " views"], true: Float[np.ndarray, " views"]
-) -> None:
-    tidy(axes, x="true heading (°)", y="learnt heading, aligned (°)", title="learnt against true heading")
-    axes.plot([-180, 180], [-180, 180], color=SOFT, linewidth=0.6)
-    axes.scatter(_degrees(true), _degrees(estimated), s=4, c=direction_colours(estimated), linewidths=0)
-    axes.set(xlim=(-185, 185), ylim=(-185, 185), xticks=QUARTERS, yticks=QUARTERS, aspect="equal")
-
-
-def _draw_sizes(axes: Axes, size: Float[np.ndarray, " views"]) -> None:
-    median, most = np.percentile(size, [50, 95])
-    limit = max(3 * float(most), 1e-3)
-    beyond = int(np.count_nonzero(size > limit))
-    tidy(axes, x="size of the heading error (°)", y="views", title=f"{len(size):,} views")
-    axes.hist(np.minimum(size, limit), bins=np.linspace(0, limit, 46).tolist(), color=SOFT)
-    axes.axvline(median, color=GOOD, linewidth=1.4, label=f"median {median:.1f}°")
-    axes.axvline(most, color=BAD, linewidth=1.4, linestyle="--", label=f"95 % below {most:.1f}°")
-    axes.set_xlim(0, limit)
-    tidy_legend(axes, title=f"{beyond} beyond {limit:.0f}°, in the last bin" if beyond else "")
 
 
 def _draw_room(axes: Axes, error: np.ndarray, positions: Float[np.ndarray, "views 2"]) -> None:
@@ -101,7 +74,6 @@ def _draw_room(axes: Axes, error: np.ndarray, positions: Float[np.ndarray, "view
     mean = np.rad2deg(np.arctan2(imaginary, real)).reshape(ny, nx)
     limit = max(float(np.nanpercentile(np.abs(mean), 98)), 1e-3)
     tidy_room(axes, title="mean error over the room")
-    colours = colormaps["RdBu_r"].with_extremes(bad=ABSENT)
-    drawn = axes.pcolormesh(*edges, np.ma.masked_invalid(mean), cmap=colours, vmin=-limit, vmax=limit)
+    drawn = draw_bins(axes, edges, mean, "RdBu_r", low=-limit, high=limit)
     bar = colour_bar(axes, drawn, "learnt − true heading (°)", extend="both")
     bar.ax.axhline(0, color=INK, linewidth=0.6)

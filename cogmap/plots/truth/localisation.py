@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cogmap.errors import CogmapError
-from cogmap.plots.style import BAD, GOOD, SOFT, new_figure, tidy, tidy_legend
+from cogmap.plots.style import BAD, GOOD, SOFT, new_panels, tidy, tidy_legend
 
 
 def plot_localisation(table: pd.DataFrame) -> Figure:
@@ -29,15 +29,13 @@ def plot_localisation(table: pd.DataFrame) -> Figure:
     table = table.dropna()
     if table.empty:
         raise CogmapError("no view has a place; give at least one")
-    figure = new_figure(10.0, 4.0)
-    left, right = figure.subplots(1, 2, sharey=True)
+    figure, (left, right) = new_panels(10.0, 4.0, 1, 2, sharey=True)
     tidy(left, x="position error (cm)", y="share of views", title=f"{len(table):,} views")
     tidy(right, x="heading error (°)")
     for prefix, name, colour in kinds:
         _draw(left, 100 * table[f"{prefix}position_error_m"].to_numpy(), name, " cm", colour)
         _draw(right, table[f"{prefix}heading_error_deg"].to_numpy(), name, "°", colour)
-    left.set_ylim(0, 1.25)
-    left.set_yticks([0, 0.25, 0.5, 0.75, 1])
+    left.set(ylim=(0, 1.25), yticks=[0, 0.25, 0.5, 0.75, 1])
     return figure
 
 
@@ -48,4 +46,4 @@ def _draw(axes: Axes, errors: np.ndarray, name: str, unit: str, colour: str) -> 
     axes.ecdf(np.maximum(errors, 1e-3), color=colour, linewidth=1.6, label=said)
     axes.set_xscale("log")
     axes.axhline(0.5, color=SOFT, linewidth=0.6, linestyle=":")
-    tidy_legend(axes, loc="best")
+    tidy_legend(axes)

@@ -6,12 +6,12 @@ import numpy as np
 from jaxtyping import Float
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from cogmap.cells.rates.bins import bin_edges, means_by_bin
 from cogmap.inputs import check_array
-from cogmap.plots.style import BAD, GOOD, SOFT, colour_bar, new_figure, tidy, tidy_legend, tidy_room
+from cogmap.plots.style import SOFT, new_panels, tidy, tidy_room
+from cogmap.plots.truth.errors import draw_moves, draw_sizes
 
 
 def plot_metric_map(mapped: Float[np.ndarray, "views 2"], true: Float[np.ndarray, "views 2"]) -> Figure:
@@ -35,15 +35,14 @@ def plot_metric_map(mapped: Float[np.ndarray, "views 2"], true: Float[np.ndarray
     """
     check_array("true", true, (None, 2))
     check_array("mapped", mapped, (len(true), 2))
-    figure = new_figure(12.0, 4.6)
-    left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
+    figure, (left, right) = new_panels(12.0, 4.6, 1, 2, width_ratios=[1.5, 1])
     away = mapped.astype(float) - true
     _draw_lattice(left, away, true)
     spread = np.square(true - true.mean(axis=0)).sum()
     explained = 1 - np.square(away).sum() / spread if spread else np.nan
     title = f"{len(true):,} views, R² {explained:.4f}"
     tidy(right, x="distance from the true position (cm)", y="views", title=title)
-    _draw_distances(right, 100 * np.linalg.norm(away, axis=1))
+    draw_sizes(right, 100 * np.linalg.norm(away, axis=1), " cm", 2.0)
     return figure
 
 
@@ -58,13 +57,8 @@ def _draw_lattice(axes: Axes, away: Float[np.ndarray, "views 2"], true: Float[np
     axes.add_collection(LineCollection(list(_links(square)), colors=SOFT, linewidths=0.5))
     ends = _links(square + mean)
     length = _links(np.repeat(moved[:, :, None], 2, axis=2))[:, :, 0].mean(axis=1)
-    longest = max(float(np.nanpercentile(moved, 99)), 1e-3)
-    lines = LineCollection(
-        list(ends), array=length, cmap="viridis_r", norm=Normalize(0, longest), linewidths=1.6
-    )
-    axes.add_collection(lines)
-    axes.autoscale_view()
-    colour_bar(axes, lines, "mean error (cm)", extend="max")
+    longest = float(np.nanpercentile(moved, 99))
+    draw_moves(axes, ends, length, "mean error (cm)", longest=longest, width=1.6)
 
 
 def _links(nodes: Float[np.ndarray, "ny nx 2"]) -> Float[np.ndarray, "links 2 2"]:
@@ -74,14 +68,3 @@ def _links(nodes: Float[np.ndarray, "ny nx 2"]) -> Float[np.ndarray, "links 2 2"
     links = np.concatenate([across, along])
     finite: np.ndarray = links[np.isfinite(links).all(axis=(1, 2))]
     return finite
-
-
-def _draw_distances(axes: Axes, away: Float[np.ndarray, "views"]) -> None:
-    median, most = np.percentile(away, [50, 95])
-    limit = max(2 * float(most), 1e-3)
-    beyond = int(np.count_nonzero(away > limit))
-    axes.hist(np.minimum(away, limit), bins=np.linspace(0, limit, 46).tolist(), color=SOFT)
-    axes.axvline(median, color=GOOD, linewidth=1.4, label=f"median {median:.1f} cm")
-    axes.axvline(most, color=BAD, linewidth=1.4, linestyle="--", label=f"95 % below {most:.1f} cm")
-    axes.set_xlim(0, limit)
-    tidy_legend(axes, title=f"{beyond} beyond {limit:.0f} cm, in the last bin" if beyond else "")

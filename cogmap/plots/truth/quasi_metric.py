@@ -7,21 +7,11 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator, NullLocator, StrMethodFormatter
 
-from cogmap.plots.style import (
-    BAD,
-    QUARTERS,
-    SOFT,
-    colour_bar,
-    direction_colours,
-    new_figure,
-    tidy,
-    tidy_room,
-)
+from cogmap.plots.style import BAD, SOFT, colour_bar, draw_headings, new_panels, plain_ticks, tidy, tidy_room
 
 DISTORTION = "geodesic / motion, over that of all pairs"
-TICKS = [0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 2]
+TICKS = [0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0]
 
 
 def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
@@ -40,8 +30,8 @@ def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
     # Places are worth a map when they extend over half a metre along x and y.
     roomy = bool((places[["x_m", "y_m"]].max() - places[["x_m", "y_m"]].min() > 0.5).all())
     widths = [1.0, 0.9, 1.2] if roomy else [1.0, 0.9]
-    figure = new_figure(5.0 * sum(widths), 4.2)
-    left, middle, *right = figure.subplots(1, len(widths), width_ratios=widths)
+    figure, panels = new_panels(5.0 * sum(widths), 4.2, 1, len(widths), width_ratios=widths)
+    left, middle, *right = panels
     _draw_pairs(left, pairs["motion_m"].to_numpy(), pairs["geodesic"].to_numpy())
     _draw_headings(middle, places)
     if roomy:
@@ -51,43 +41,26 @@ def plot_quasi_metric(pairs: pd.DataFrame, places: pd.DataFrame) -> Figure:
 
 def _draw_headings(axes: Axes, places: pd.DataFrame) -> None:
     tidy(axes, x="heading (°)", y=DISTORTION, title="distortion by heading")
-    headings = places["heading_rad"].to_numpy()
-    axes.scatter(np.rad2deg(headings), places["distortion"], s=9, c=direction_colours(headings), linewidths=0)
+    draw_headings(axes, places["heading_rad"].to_numpy(), places["distortion"], size=9.0)
     axes.axhline(1, color=SOFT, linewidth=0.6)
     axes.set_yscale("log", base=2)
-    axes.yaxis.set_major_locator(FixedLocator(TICKS))
-    axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    axes.set(xlim=(-185, 185), xticks=QUARTERS)
+    plain_ticks(axes.yaxis, TICKS)
 
 
 def _draw_room(axes: Axes, places: pd.DataFrame) -> None:
     tidy_room(axes, title="distortion by place")
     farthest = max(float(np.abs(np.log2(places["distortion"])).quantile(0.98)), 0.05)
-    drawn = axes.scatter(
-        places["x_m"],
-        places["y_m"],
-        c=places["distortion"],
-        s=16,
-        cmap="RdBu_r",
-        norm=LogNorm(2**-farthest, 2**farthest),
-        linewidths=0,
-    )
+    x, y, scale = places["x_m"], places["y_m"], LogNorm(2**-farthest, 2**farthest)
+    drawn = axes.scatter(x, y, c=places["distortion"], s=16, cmap="RdBu_r", norm=scale, linewidths=0)
     axes.margins(0.08)
-    bar = colour_bar(axes, drawn, DISTORTION, extend="both")
-    bar.ax.yaxis.set_major_locator(FixedLocator(TICKS))
-    bar.ax.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
-    bar.ax.yaxis.set_minor_locator(NullLocator())
+    plain_ticks(colour_bar(axes, drawn, DISTORTION, extend="both").ax.yaxis, TICKS)
 
 
 def _draw_pairs(axes: Axes, motion: np.ndarray, geodesic: np.ndarray) -> None:
     # In each band of motion distance the median geodesic is taken.
     bands = 25
-    tidy(
-        axes,
-        x="distance of the poses (m, 0.5 m/rad)",
-        y="geodesic of the images (no unit)",
-        title=f"{len(motion):,} pairs; median in red",
-    )
+    title = f"{len(motion):,} pairs; median in red"
+    tidy(axes, x="distance of the poses (m, 0.5 m/rad)", y="geodesic of the images (no unit)", title=title)
     counts = axes.hist2d(motion, geodesic, bins=60, cmap="Greys", cmin=1)[3]
     colour_bar(axes, counts, "pairs")
     edges = np.quantile(motion, np.linspace(0, 1, bands + 1))

@@ -7,7 +7,7 @@ from jaxtyping import Float
 from matplotlib.figure import Figure
 
 from cogmap.inputs import check_array
-from cogmap.plots.style import direction_colours, heading_bar, new_figure, tidy
+from cogmap.plots.style import direction_colours, heading_bar, new_panels, tidy
 
 
 def plot_translation(
@@ -34,15 +34,9 @@ def plot_translation(
     check_array("height", height, (None,))
     check_array("along", along, (len(height),))
     check_array("headings", headings, (len(height),))
-    figure = new_figure(6.0, 4.2)
-    axes = figure.subplots()
-    squared = np.corrcoef(height, along)[0, 1] ** 2
-    tidy(
-        axes,
-        x="position along the way (m)",
-        y="height on the cylinder (no unit)",
-        title=f"{len(height):,} views, R² = {squared:.3f}",
-    )
+    figure, axes = new_panels(6.0, 4.2)
+    title = f"{len(height):,} views, R² = {np.corrcoef(height, along)[0, 1] ** 2:.3f}"
+    tidy(axes, x="position along the way (m)", y="height on the cylinder (no unit)", title=title)
     axes.scatter(along, height, s=3, c=direction_colours(headings), linewidths=0)
     heading_bar(axes)
     return figure

@@ -1,6 +1,7 @@
 import errno
 import os
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from arena.recordings import sharding
-from arena.recordings.sharding import SHARD, codecs, file, is_complete, shard_writer, shards
+from arena.recordings.sharding import SHARD, codecs, file, is_complete, shards, write_shards
 
 IMAGES = np.random.default_rng(0).integers(0, 9, (SHARD + 44, 4, 6, 3), dtype=np.uint8)
 FIRST, SECOND = shards(len(IMAGES))
@@ -18,9 +19,7 @@ FIRST, SECOND = shards(len(IMAGES))
 
 @pytest.fixture
 def written(tmp_path: Path) -> Path:
-    with shard_writer(tmp_path) as writer:
-        for rows in (FIRST, SECOND):
-            writer[rows] = IMAGES[rows]
+    write_shards(tmp_path, ((rows, IMAGES[rows]) for rows in (FIRST, SECOND)))
     return tmp_path
 
 
@@ -54,18 +53,19 @@ def test_bytes_are_those_of_zarr(tmp_path: Path, written: Path) -> None:
 
 
 def test_what_is_written_is_whole(written: Path) -> None:
-    assert is_complete(file(written, FIRST), SHARD)
-    assert is_complete(file(written, SECOND), 44)
-    assert not is_complete(file(written, SECOND), 43)
-    assert not is_complete(file(written, SECOND), 45)
-    assert not is_complete(written, 1)
-    assert not is_complete(written / "nothing", 1)
+    assert is_complete(written, FIRST)
+    assert is_complete(written, SECOND)
+    assert not is_complete(written, slice(SHARD, SHARD + 43))
+    assert not is_complete(written, slice(SHARD, SHARD + 45))
+    assert not is_complete(written / "nothing", FIRST)
+    (written / "folder" / "c" / "0" / "0" / "0" / "0").mkdir(parents=True)
+    assert not is_complete(written / "folder", FIRST)
 
 
 def test_shard_that_lacks_an_image_is_not_whole(tmp_path: Path) -> None:
     by_zarr(tmp_path, np.concatenate([IMAGES[:100], 0 * IMAGES[:1], IMAGES[101:]]))
-    assert not is_complete(file(tmp_path, FIRST), SHARD)
-    assert is_complete(file(tmp_path, SECOND), 44)
+    assert not is_complete(tmp_path, FIRST)
+    assert is_complete(tmp_path, SECOND)
 
 
 @given(data=st.data())
@@ -73,8 +73,7 @@ def test_what_is_cut_or_lengthened_or_has_another_index_is_not_whole(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
 ) -> None:
     folder = tmp_path_factory.mktemp("shard")
-    with shard_writer(folder) as writer:
-        writer[slice(0, 3)] = IMAGES[:3]
+    write_shards(folder, [(slice(0, 3), IMAGES[:3])])
     path = file(folder, slice(0, 3))
     sound = path.read_bytes()
     damage = data.draw(st.sampled_from(["cut", "lengthened", "index"]))
@@ -89,7 +88,7 @@ def test_what_is_cut_or_lengthened_or_has_another_index_is_not_whole(
         damaged = bytearray(sound)
         damaged[-at] ^= data.draw(st.integers(1, 255))
     path.write_bytes(damaged)
-    assert is_complete(path, 3) == (bytes(damaged) == sound)
+    assert is_complete(folder, slice(0, 3)) == (bytes(damaged) == sound)
 
 
 def test_large_images_give_the_same_bytes_every_time(tmp_path: Path) -> None:
@@ -97,8 +96,7 @@ def test_large_images_give_the_same_bytes_every_time(tmp_path: Path) -> None:
     images = np.repeat(np.random.default_rng(0).integers(0, 256, (4, 500, 200, 3), dtype=np.uint8), 8, axis=2)
     found = set()
     for attempt in range(10):
-        with shard_writer(tmp_path / str(attempt)) as writer:
-            writer[slice(0, 4)] = images
+        write_shards(tmp_path / str(attempt), [(slice(0, 4), images)])
         found.add(file(tmp_path / str(attempt), slice(0, 4)).read_bytes())
     assert len(found) == 1
 
@@ -110,22 +108,23 @@ def test_next_shard_can_be_made_while_one_is_written(tmp_path: Path, monkeypatch
         assert made.wait(10)
         real(path, images)
 
-    monkeypatch.setattr(sharding, "_write", slow)
-    with shard_writer(tmp_path) as writer:
-        writer[FIRST] = IMAGES[FIRST]
+    def making() -> Iterator[tuple[slice, np.ndarray]]:
+        yield FIRST, IMAGES[FIRST]
         made.set()
-        writer[SECOND] = IMAGES[SECOND]
-    assert is_complete(file(tmp_path, SECOND), 44)
+        yield SECOND, IMAGES[SECOND]
+
+    monkeypatch.setattr(sharding, "_write", slow)
+    write_shards(tmp_path, making())
+    assert is_complete(tmp_path, SECOND)
 
 
 @pytest.mark.parametrize("more", [[], [FIRST]], ids=["at the end", "with the next shard"])
 def test_what_cannot_be_written_leaves_nothing_and_is_told(tmp_path: Path, more: list[slice]) -> None:
     (tmp_path / "c" / "0").mkdir(parents=True)
     (tmp_path / "c" / "1").write_text("in the way")
-    with pytest.raises(NotADirectoryError), shard_writer(tmp_path) as writer:
-        for rows in (FIRST, SECOND, *more):
-            writer[rows] = IMAGES[rows]
-    assert is_complete(file(tmp_path, FIRST), SHARD)
+    with pytest.raises(NotADirectoryError):
+        write_shards(tmp_path, ((rows, IMAGES[rows]) for rows in (FIRST, SECOND, *more)))
+    assert is_complete(tmp_path, FIRST)
     assert not list(tmp_path.rglob("*.partial"))
 
 
@@ -134,6 +133,6 @@ def test_what_fails_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(sharding, "_checksum", full)
-    with pytest.raises(OSError, match="No space left"), shard_writer(tmp_path) as writer:
-        writer[FIRST] = IMAGES[FIRST]
+    with pytest.raises(OSError, match="No space left"):
+        write_shards(tmp_path, [(FIRST, IMAGES[FIRST])])
     assert not [path for path in tmp_path.rglob("*") if path.is_file()]

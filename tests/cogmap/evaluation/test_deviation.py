@@ -3,7 +3,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import cogmap
 from cogmap.errors import CogmapError
 from cogmap.evaluation.deviation import path_deviation, path_length
 
@@ -61,9 +60,3 @@ def test_standing_still_is_no_deviation_and_nonsense_is_refused() -> None:
         path_deviation(np.zeros((0, 3)))
     with pytest.raises(CogmapError, match="not finite"):
         path_deviation(np.full((2, 3), np.inf))
-
-
-def test_it_is_found_under_its_old_name_too() -> None:
-    assert cogmap.navigation.path_deviation is path_deviation
-    with pytest.raises(AttributeError, match="no attribute 'anything'"):
-        _ = cogmap.navigation.anything

@@ -1,10 +1,9 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from arena import Arena, Brownian, Camera, Nose, Rotation
-from cogmap.experiments.conditions import FRESH_SEED, Conditions, poses_of
+from cogmap.experiments.conditions import FRESH_SEED, Conditions
 
 ROOM = Arena.load("furnished")
 SMALL = Camera.panoramic(36, 6)
@@ -13,16 +12,16 @@ SMALL = Camera.panoramic(36, 6)
 def test_the_walk_is_the_same_whatever_the_camera() -> None:
     conditions = Conditions(ROOM, 40, seed=3)
     around, ahead = (conditions.explore(Brownian(), camera) for camera in (SMALL, Camera.perspective(32, 24)))
-    np.testing.assert_array_equal(poses_of(around), poses_of(ahead))
+    np.testing.assert_array_equal(around.require("poses"), ahead.require("poses"))
     assert len(around) == 40
 
 
 def test_a_fresh_walk_is_another() -> None:
     known, fresh = (Conditions(ROOM, 40).explore(Brownian(), SMALL, views=20, fresh=x) for x in (False, True))
     assert len(fresh) == 20
-    assert not np.array_equal(poses_of(known), poses_of(fresh))
+    assert not np.array_equal(known.require("poses"), fresh.require("poses"))
     same = Conditions(ROOM, 20, seed=FRESH_SEED).explore(Brownian(), SMALL)
-    np.testing.assert_array_equal(poses_of(same), poses_of(fresh))
+    np.testing.assert_array_equal(same.require("poses"), fresh.require("poses"))
 
 
 def test_views_kept_in_a_folder_are_the_same(tmp_path: Path) -> None:
@@ -34,18 +33,12 @@ def test_views_kept_in_a_folder_are_the_same(tmp_path: Path) -> None:
     assert len(list(tmp_path.iterdir())) == 2
 
 
-def test_what_has_no_truth_is_refused() -> None:
-    blind = Conditions(ROOM, 20).explore(Brownian(), SMALL).without_truth()
-    with pytest.raises(ValueError, match="has poses"):
-        poses_of(blind)
-
-
 def test_what_the_setting_has_goes_before_what_the_experiment_has() -> None:
     usual = Conditions(ROOM, 30).explore(Brownian(), SMALL)
     keen = Conditions(ROOM, 30, nose=Nose(noise=0.0)).explore(Brownian(), SMALL)
-    clean = ROOM.odours.concentration(poses_of(keen)[:, :2])
+    clean = ROOM.odours.concentration(keen.require("poses")[:, :2])
     np.testing.assert_allclose(keen.odours, clean, rtol=1e-5)
     assert np.abs(np.log(usual.odours / clean)).max() > 0.1
     spun = Conditions(ROOM, 30, motion=Rotation(), camera=Camera.panoramic(72, 12)).explore(Brownian(), SMALL)
     assert spun.views.shape[1:] == (12, 72, 3)
-    assert np.ptp(poses_of(spun)[:, :2]) < np.ptp(poses_of(usual)[:, :2])
+    assert np.ptp(spun.require("poses")[:, :2]) < np.ptp(usual.require("poses")[:, :2])

@@ -4,7 +4,7 @@ from pathlib import Path
 import matplotlib.image
 import pandas as pd
 
-from cogmap.experiments.result import Result
+from cogmap.experiments.result import USUAL_CAPTIONS, Result
 from cogmap.plots.style import new_figure
 
 
@@ -24,3 +24,15 @@ def test_everything_is_written_and_reads_back(tmp_path: Path) -> None:
     assert matplotlib.image.imread(tmp_path / "line.png").std() > 0.01
     pd.testing.assert_frame_equal(pd.read_csv(tmp_path / "errors.csv"), table)
     assert len(list(tmp_path.iterdir())) == 5
+
+
+def test_described_it_tells_what_it_is_of_and_has_the_usual_captions() -> None:
+    figures = {name: new_figure(1.0, 1.0) for name in ("walk", "room", "barcodes", "odd_one")}
+    own = {"barcodes": "Bars of a spin", "walk": "The way", "torus": "Not drawn"}
+    found = Result({"views": 2, "r2": 0.5}, figures=figures, captions=own).described({"seed": 3, "views": 9})
+    assert found.metrics == {"seed": 3, "views": 2, "r2": 0.5}
+    assert list(found.captions.items()) == [
+        ("walk", "The way"),
+        ("room", USUAL_CAPTIONS["room"]),
+        ("barcodes", "Bars of a spin"),
+    ]

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numba
 import numpy as np
@@ -15,7 +16,7 @@ from cogmap import Activity, CogmapError, CognitiveMap, UntrustedMapWarning, sco
 from cogmap.map.cognitive_map import BATCH
 from neurons.circuit import Circuit
 from neurons.network import Network
-from neurons.stages import STAGES, Batch, Stage
+from neurons.stages import STAGES, Batch, StripStage, chosen, joined
 
 SHARED = 2000
 Grow = Callable[..., CognitiveMap]
@@ -68,16 +69,25 @@ def test_another_seed_gives_another_map(walk: Recording, grow: Grow, cmap: Cogni
 def test_fit_is_epochs_of_partial_fit(
     walk: Recording, cmap: CognitiveMap, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # a view's strip is rounded by the company it is seen in, so both learn from the same strips
-    seen = torch.cat([strip for _, strip in cmap._strips(walk.views)])
+    # what is made of a view is rounded by the company it is seen in, so both learn from the same
+    whole = torch.cat([strip for _, strip in cmap._strips(walk.views)])
     index = {view.tobytes(): row for row, view in enumerate(walk.views)}
+    made: dict[Callable[..., Any], Any] = {}
 
-    def strips(_: CognitiveMap, views: np.ndarray) -> Iterator[tuple[slice, torch.Tensor]]:
+    def which(_: CognitiveMap, views: np.ndarray) -> Iterator[tuple[slice, torch.Tensor]]:
         for start in range(0, len(views), BATCH):
             rows = slice(start, start + BATCH)
-            yield rows, seen[[index[view.tobytes()] for view in views[rows]]]
+            yield rows, torch.tensor([[float(index[view.tobytes()])] for view in views[rows]])
 
-    monkeypatch.setattr(CognitiveMap, "_strips", strips)
+    def see(network: Network, views: torch.Tensor) -> Any:
+        network.advance_stage()
+        look = type(network.stage).see
+        if look not in made:
+            made[look] = joined([look(network, batch) for batch in whole.split(BATCH)])
+        return chosen(made[look], views.flatten().long())
+
+    monkeypatch.setattr(CognitiveMap, "_strips", which)
+    monkeypatch.setattr(Network, "see", see)
     streamed = CognitiveMap(charts=cmap.charts, components=cmap.components, epoch=len(walk), seed=0)
     order = np.random.default_rng(0)
     for stage in STAGES:
@@ -91,12 +101,12 @@ def test_fit_asks_the_stages_for_epochs_and_order(walk: Recording, monkeypatch: 
     smelt: list[torch.Tensor] = []
 
     @dataclass(frozen=True)
-    class Listening(Stage):
+    class Listening(StripStage):
         name = "listening"
         in_order = True
         epochs: int = 2
 
-        def learn(self, circuit: Circuit, batch: Batch) -> None:  # noqa: ARG002
+        def learn(self, circuit: Circuit, batch: Batch[torch.Tensor]) -> None:  # noqa: ARG002
             smelt.append(batch.log_odours)
 
     stages = (*STAGES[:2], Listening(), *STAGES[2:])

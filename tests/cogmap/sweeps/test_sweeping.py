@@ -17,6 +17,7 @@ from cogmap.experiments.registry import Experiment, experiments
 from cogmap.portable import arithmetic
 from cogmap.sweeps import running
 from cogmap.sweeps.ledger import is_full_disk
+from cogmap.sweeps.points import Point
 
 GRID: dict[str, list[Any]] = {"nose.noise": [0.0, 0.5], "map.charts": [15, 40]}
 PLAN = Plan.create(experiment="toy", seeds=[0, 1], grid=GRID)
@@ -246,11 +247,11 @@ def test_a_stranger_experiment_reaches_the_catalogue_of_a_worker(
 ) -> None:
     chosen: Experiment = experiments()["toy"]
 
-    def forgetful(tasks: list[running.Task], workers: int | None) -> Any:
+    def forgetful(work: Callable[[Point], None], points: list[Point], workers: int | None) -> Any:
         assert workers == 1
         del experiments()["toy"]
-        for task in tasks:
-            yield running.do(task)
+        for point in points:
+            yield work(point)
 
     monkeypatch.setattr("cogmap.sweeps.sweeping.on_this_machine", forgetful)
     assert (sweep(PLAN, tmp_path, workers=1)["error"] == "").all()

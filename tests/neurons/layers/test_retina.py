@@ -31,13 +31,27 @@ def by_opencv_and_scipy(view: np.ndarray, faintest: float = 0.0) -> np.ndarray:
     return ring_blur(strip / (contrast + 0.1 * contrast.mean() + faintest), 3.0).ravel()
 
 
-@pytest.mark.parametrize(("height", "width"), [(15, 90), (30, 360), (37, 200)])
+@pytest.mark.parametrize(("height", "width"), [(15, 90), (30, 360), (37, 200), (240, 1440), (30, 200)])
 def test_same_as_opencv_and_scipy(height: int, width: int) -> None:
     views = scenes(3, height, width)
     strips = Retina(height, width)(views).numpy()
     trusted = np.array([by_opencv_and_scipy(view) for view in views.numpy()])
     np.testing.assert_allclose(strips, trusted, atol=2e-3)
     assert trusted.std() > 0.1
+
+
+@pytest.mark.parametrize(("height", "width"), [(15, 90), (60, 360), (240, 1440), (64, 200)])
+def test_no_weight_is_subnormal(height: int, width: int) -> None:
+    # a product takes fifty times as long where one is
+    for weights in Retina(height, width).buffers():
+        assert not ((weights != 0) & (weights.abs() < torch.finfo(torch.float32).tiny)).any()
+
+
+def test_the_brightest_views_overflow_no_sum() -> None:
+    views = scenes(2, 240, 1440) // 2 + 128
+    strips = Retina(240, 1440)(views).numpy()
+    trusted = np.array([by_opencv_and_scipy(view) for view in views.numpy()])
+    np.testing.assert_allclose(strips, trusted, atol=2e-3)
 
 
 def test_contrasts_too_faint_are_amplified_no_further() -> None:

@@ -2,14 +2,14 @@ import numpy as np
 import pytest
 
 from arena import Arena
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments import Conditions
 from cogmap.experiments.controls.acuity import acuity, explore_at_acuity
 
 
 def test_a_coarse_eye_has_large_pixels_on_the_same_walk() -> None:
     conditions = Conditions(Arena.load("furnished"), 60, seed=2)
     fine, coarse = (explore_at_acuity(conditions, columns).walk for columns in (360, 12))
-    np.testing.assert_array_equal(poses_of(fine), poses_of(coarse))
+    np.testing.assert_array_equal(fine.require("poses"), coarse.require("poses"))
     assert fine.views.shape == (60, 60, 360, 3)
     assert coarse.views.shape == (60, 16, 96, 3)
     blocks = np.asarray(coarse.views).reshape(60, 2, 8, 12, 8, 3)

@@ -8,7 +8,7 @@ def test_poses_are_the_means_of_the_ten_nearest_by_distance() -> None:
     known, held = rng.normal(size=(50, 4)), rng.normal(size=(3, 4))
     poses = np.column_stack([rng.normal(size=(50, 2)), rng.uniform(-np.pi, np.pi, 50)])
     found = _read_poses(known, poses, held)
-    for row, (position, heading) in enumerate(zip(found.positions, found.headings, strict=True)):
+    for row, (position, heading) in enumerate(zip(found[:, :2], found[:, 2], strict=True)):
         apart = np.linalg.norm(known - held[row], axis=1)
         nearest = np.argsort(apart)[:10]
         weights = 1 / apart[nearest]
@@ -22,11 +22,11 @@ def test_headings_are_read_across_the_cut() -> None:
     poses = np.column_stack([np.zeros((200, 2)), ring])
     asked = np.array([np.pi - 0.01, 0.01 - np.pi, 0.7])
     found = _read_poses(known, poses, np.column_stack([np.cos(asked), np.sin(asked)]))
-    np.testing.assert_allclose(np.angle(np.exp(1j * (found.headings - asked))), 0, atol=0.02)
+    np.testing.assert_allclose(np.angle(np.exp(1j * (found[:, 2] - asked))), 0, atol=0.02)
 
 
 def test_known_views_have_their_own_pose() -> None:
     rng = np.random.default_rng(1)
     known, poses = rng.normal(size=(30, 4)), rng.uniform(-1, 1, (30, 3))
     found = _read_poses(known, poses, known)
-    np.testing.assert_allclose(np.column_stack([*found.positions.T, found.headings]), poses)
+    np.testing.assert_allclose(found, poses)

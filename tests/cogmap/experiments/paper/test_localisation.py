@@ -3,7 +3,7 @@ import pandas as pd
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cogmap.experiments.paper.localisation import _errors, _summary, _table_3, interpolated_poses
+from cogmap.experiments.paper.localisation import _summary, _table_3, interpolated_poses
 from cogmap.navigation import Location
 
 ANGLES = st.floats(-np.pi, np.pi)
@@ -41,13 +41,6 @@ def test_missing_neighbours_do_not_count_and_without_any_there_is_no_pose() -> N
     read = interpolated_poses(location, poses)
     np.testing.assert_allclose(read[0], poses[0])
     assert np.isnan(read[1]).all()
-
-
-def test_errors_are_metres_and_degrees_the_short_way() -> None:
-    read, truth = np.array([[3.0, 4, 3.1], [0, 0, 0.5]]), np.array([[0.0, 0, -3.1], [0, 0, 0.25]])
-    found = _errors("nearest_", read, truth)
-    np.testing.assert_allclose(found["nearest_position_error_m"], [5, 0])
-    np.testing.assert_allclose(found["nearest_heading_error_deg"], np.rad2deg([2 * np.pi - 6.2, 0.25]))
 
 
 def test_the_summary_leaves_out_views_without_a_place() -> None:

@@ -73,14 +73,14 @@ def test_paths_are_scored_by_length_by_deviation_and_by_what_they_touch() -> Non
 def test_the_summary_counts_failures_as_failures_only() -> None:
     bent = BELOW + np.array([[0, 0, 0], [0, 1, 0], [0, 0, 0]])
     scores = _scores(ROOM, [BELOW, bent, None, None], np.full(4, 3.0))
-    found = _summary(scores.add_prefix("prm_"), "prm_")
-    assert found["prm_success"] == 0.5
-    assert found["prm_paths_touching"] == 0.5
-    assert found["prm_length_ratio_median"] == pytest.approx((1 + 2 * np.hypot(1.5, 1) / 3) / 2)
+    found = _summary(scores)
+    assert found["success"] == 0.5
+    assert found["paths_touching"] == 0.5
+    assert found["length_ratio_median"] == pytest.approx((1 + 2 * np.hypot(1.5, 1) / 3) / 2)
     deviation = path_deviation(bent)
-    assert found["prm_deviation_mean"] == pytest.approx(deviation.mean / 2)
-    assert found["prm_deviation_variance"] == pytest.approx(deviation.variance / 2)
-    assert found["prm_deviation_max"] == pytest.approx(deviation.maximum / 2)
+    assert found["deviation_mean"] == pytest.approx(deviation.mean / 2)
+    assert found["deviation_variance"] == pytest.approx(deviation.variance / 2)
+    assert found["deviation_max"] == pytest.approx(deviation.maximum / 2)
 
 
 def test_plans_lead_from_start_through_views_to_goal_and_fail_where_there_is_no_way() -> None:

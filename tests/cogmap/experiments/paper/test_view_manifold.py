@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from arena import Arena, Camera, Rotation
-from cogmap.experiments.conditions import Conditions, poses_of
+from cogmap.experiments import Conditions
 from cogmap.experiments.paper.view_manifold import ViewManifold, view_manifold
 
 
@@ -10,7 +10,7 @@ from cogmap.experiments.paper.view_manifold import ViewManifold, view_manifold
 def spin() -> tuple[ViewManifold, np.ndarray]:
     conditions = Conditions(Arena.load("furnished"), 800)
     walk = conditions.explore(Rotation(), Camera.perspective(160, 120))
-    return view_manifold(walk.views, conditions), poses_of(walk)
+    return view_manifold(walk.views, conditions), walk.require("poses")
 
 
 def test_a_spin_is_a_ring_with_one_degree_of_freedom(spin: tuple[ViewManifold, np.ndarray]) -> None:
