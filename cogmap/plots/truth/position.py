@@ -68,6 +68,6 @@ def _draw_room(
     ends = np.stack([true[chosen], recalled[chosen]], axis=1)
     length = 100 * np.linalg.norm(recalled[chosen] - true[chosen], axis=1)
     tidy_room(axes, title=f"true (dot) to recalled position, {count:,} of {len(true):,} views")
-    axes.scatter(*true[chosen].T, s=2.5, color=INK, linewidths=0, zorder=3)
+    axes.scatter(true[chosen, 0], true[chosen, 1], s=2.5, color=INK, linewidths=0, zorder=3)
     longest = float(np.percentile(length, 99))
     draw_moves(axes, ends, length, "position error (cm)", longest=longest, width=0.9)
