@@ -105,5 +105,4 @@ class Retina(nn.Module):
         contrast = (strip.square().mean(dim=1, keepdim=True) @ self.pooling).sqrt()
         # never 0: even a view of one colour is divided by `faintest`
         gain = contrast + self.floor * contrast.mean(dim=2, keepdim=True) + self.faintest
-        blurred: Tensor = strip / gain @ self.blur
-        return blurred.flatten(1)
+        return torch.flatten(strip / gain @ self.blur, start_dim=1)
