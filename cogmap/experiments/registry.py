@@ -147,7 +147,7 @@ def run_experiment(
         For an unknown name, a room or counts that cannot work, something that the experiment does not take, a
         folder that holds something else.
     """
-    check_choice("experiment", name, tuple(experiments()))
+    check_choice("experiment", name, tuple(sorted(experiments())))
     chosen = experiments()[name]
     if room is not None and not chosen.any_room:
         raise CogmapError(f"{name} takes place in rooms of its own, not in {room.name!r}; leave the room out")

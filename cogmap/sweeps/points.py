@@ -64,7 +64,7 @@ def points_of(plan: Plan) -> list[Point]:
         For an unknown experiment or parameter, something the experiment does not take, values that cannot be,
         or two points that are the same.
     """
-    check_choice("experiment", plan.experiment, tuple(experiments()))
+    check_choice("experiment", plan.experiment, tuple(sorted(experiments())))
     common = dict(plan.fixed) if plan.views is None else {**plan.fixed, "views": plan.views}
     found: dict[str, Point] = {}
     for index, assignment in enumerate(plan.assignments()):

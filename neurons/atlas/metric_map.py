@@ -120,9 +120,8 @@ class MetricMap(nn.Module):
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
         if min(half.pairs for half in halves) < len(self.offsets):
             return
-        one, other = halves
-        crossed = ((one, other), (other, one))
-        foretold = [mine.cross_validated_r2(*its.solve(self.ridge)) for mine, its in crossed]
+        pairs = (halves, halves[::-1])
+        foretold = [mine.cross_validated_r2(*its.solve(self.ridge)) for mine, its in pairs]
         self.cross_validated_r2 = torch.tensor(foretold)
         if not self.diagnosis():
             positions, turns = self._evidence(slice(0, 2)).solve(self.ridge)

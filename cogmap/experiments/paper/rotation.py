@@ -104,7 +104,12 @@ def predict_headings(
         return wrap_angle(np.arctan2(sine, cosine) - headings[views])
 
     perceptron = partial(
-        MLPRegressor, (32,), activation="tanh", solver="lbfgs", max_iter=2000, random_state=seed
+        MLPRegressor,
+        hidden_layer_sizes=(32,),
+        activation="tanh",
+        solver="lbfgs",
+        max_iter=2000,
+        random_state=seed,
     )
     with one_thread(), warnings.catch_warnings():
         # A number of steps is as good an end as any: the validation views judge.
