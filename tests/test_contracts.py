@@ -20,7 +20,7 @@ NEVER = {
 KEYS = {"name", "type", "source_modules", "forbidden_modules", "ignore_imports"}
 """Nothing else: `allow_indirect_imports` would be a hole."""
 TOOLS = ["cogmap.atomic -> arena.atomic", "cogmap.kernels -> arena.kernels"]
-"""The exceptions: how files are written and loops compiled is the same in both, and tells nothing of a room."""
+"""The exceptions: how files are written and loops compiled, which tells nothing of a room."""
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,8 @@ from cogmap.kernels import kernel
 
 WINDOW = 4
 """Mean lengths of an edge by which paths grow at a time; from 1 to 12 the time hardly changes."""
+IDLE, QUEUED, WAITS = 0, 1, 2
+"""Where a point is while paths grow: nowhere, in the ring of those to visit, in the list of those too far."""
 TASK = 8
 """Sources measured by a thread at a time, some milliseconds of work."""
 
@@ -29,8 +31,12 @@ class Paths:
     """
 
     def __init__(self, graph: sp.csr_array) -> None:
-        # Half the bytes of scipy's indices, as the graph is read from memory for every source.
-        self._edges = (graph.indptr.astype(np.int32), graph.indices.astype(np.int32), graph.data)
+        # Half the bytes of scipy's indices; unsigned, as numba looks at every sign to count from the end.
+        self._edges = (
+            graph.indptr.astype(np.uint32),
+            graph.indices.astype(np.uint32),
+            graph.data.astype(np.float64),
+        )
         self._window = WINDOW * float(graph.data.mean()) if graph.nnz else 0.0
 
     def __len__(self) -> int:
@@ -81,50 +87,55 @@ def _shorten(
     """
     nodes = len(nearest)
     # Points to visit: a ring of those nearer than `limit`, and a list of those that wait for its growth.
-    ring, waiting = np.empty(nodes, np.int32), np.empty(nodes, np.int32)
-    # 0: in neither, 1: in the ring, 2: in the list alone; one that moved to the ring stays listed until it grows.
-    state = np.zeros(nodes, np.int8)
+    ring, waiting = np.empty(nodes, np.uint32), np.empty(nodes, np.uint32)
+    # What moves from the list to the ring before the limit grows stays listed until then.
+    state = np.full(nodes, IDLE, np.int8)
     first, size, listed, limit = 0, 1, 0, window
-    nearest[source], ring[0], state[source] = 0.0, source, 1
+    nearest[source], ring[0], state[source] = 0.0, source, QUEUED
     while size > 0:
         while size > 0:
             point = ring[first]
             first = 0 if first + 1 == nodes else first + 1
             size -= 1
-            state[point], reached = 0, nearest[point]
+            state[point], reached = IDLE, nearest[point]
             for edge in range(starts[point], starts[point + 1]):
                 end, length = ends[edge], reached + lengths[edge]
                 if length < nearest[end]:
                     nearest[end] = length
+                    # Whoever left the ring was below the limit and gets no farther: nobody is listed twice.
                     if length > limit:
-                        # Was it below the limit before, it would not be above it now: nothing is listed twice.
-                        if state[end] == 0:
-                            state[end] = 2
+                        if state[end] == IDLE:
+                            state[end] = WAITS
                             waiting[listed] = end
                             listed += 1
-                    elif state[end] != 1:
-                        state[end] = 1
+                    elif state[end] != QUEUED:
+                        state[end] = QUEUED
                         last = first + size
                         ring[last - nodes if last >= nodes else last] = end
                         size += 1
-        # The nearest that waits is let in even if the window vanishes beside it by rounding.
-        limit = np.inf
-        for place in range(listed):
-            if state[waiting[place]] == 2:
-                limit = min(limit, nearest[waiting[place]])
-        limit += window
+        limit = _next_limit(nearest, waiting[:listed], state, window)
         kept = 0
         for place in range(listed):
             point = waiting[place]
-            if state[point] == 2:
-                if nearest[point] <= limit:
-                    state[point] = 1
-                    ring[(first + size) % nodes] = point
-                    size += 1
-                else:
-                    waiting[kept] = point
-                    kept += 1
+            if state[point] == WAITS and nearest[point] <= limit:
+                state[point] = QUEUED
+                ring[(first + size) % nodes] = point
+                size += 1
+            elif state[point] == WAITS:
+                waiting[kept] = point
+                kept += 1
         listed = kept
+
+
+@kernel(nogil=True)
+@typing.no_type_check
+def _next_limit(nearest: np.ndarray, waiting: np.ndarray, state: np.ndarray, window: float) -> float:
+    """Let in the nearest that waits, even if the window vanishes beside it by rounding, and a window more."""
+    least = np.inf
+    for point in waiting:
+        if state[point] == WAITS:
+            least = min(least, nearest[point])
+    return least + window
 
 
 @kernel(nogil=True)

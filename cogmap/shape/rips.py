@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 import scipy.sparse as sp
@@ -17,6 +17,7 @@ Bars = Float[np.ndarray, "_ 2"]
 """Births and deaths, in the unit of the distances; each dimension has its own number of bars."""
 
 
+@runtime_checkable
 class Space(Protocol):
     """A cloud with a metric."""
 
@@ -40,9 +41,11 @@ class Straight:
         return len(self.points)
 
     def nearer(self, point: int, nearest: Float[np.ndarray, "points"]) -> Float[np.ndarray, "points"]:
-        return np.minimum(nearest, cdist(self.points[point : point + 1], self.points)[0])
+        """See `Space`."""
+        return np.asarray(np.minimum(nearest, cdist(self.points[point : point + 1], self.points)[0]))
 
     def among(self, points: Int[np.ndarray, "some"]) -> Float[np.ndarray, "some some"]:
+        """See `Space`."""
         return np.asarray(cdist(self.points[points], self.points[points]))
 
 
@@ -56,10 +59,12 @@ class Given:
         return len(self.distances)
 
     def nearer(self, point: int, nearest: Float[np.ndarray, "points"]) -> Float[np.ndarray, "points"]:
-        return np.minimum(nearest, self.distances[point])
+        """See `Space`."""
+        return np.asarray(np.minimum(nearest, self.distances[point]))
 
     def among(self, points: Int[np.ndarray, "some"]) -> Float[np.ndarray, "some some"]:
-        return self.distances[np.ix_(points, points)]
+        """See `Space`."""
+        return np.asarray(self.distances[np.ix_(points, points)])
 
 
 def euclidean(X: Float[np.ndarray, "points features"]) -> Space:
