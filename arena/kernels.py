@@ -20,14 +20,14 @@ _settings: Any = config
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def cache_folder(root: Path) -> Path | None:
-    """Find where to cache the kernels of the package at `root`; None where nothing can be written.
+def cache_folder(root: Path, *parts: str) -> Path | None:
+    """Find where to cache the kernels that are in parts of the package at `root`; None if nowhere.
 
     The first that can be written of `NUMBA_CACHE_DIR`, the package's `__pycache__` and the user's cache. A
     new folder takes the place of those that the same package had there before it was edited.
     """
-    sources = [root / "kernels.py"]
-    for part in ("eye", "smell", "rooms"):
+    sources = [Path(__file__), root / "kernels.py"]
+    for part in parts:
         sources += sorted((root / part).rglob("*.py"))
     edition = hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in sources))
     # A user's installations share one cache and leave each other's kernels alone.
@@ -48,22 +48,28 @@ def cache_folder(root: Path) -> Path | None:
     return None
 
 
-_folder = cache_folder(Path(__file__).parent)
+def kernels_cached_in(folder: Path | None) -> Callable[..., Callable[[Function], Function]]:
+    """Make the decorator of the kernels that are cached in a folder."""
+
+    def kernel(**options: Any) -> Callable[[Function], Function]:
+        """Compile a function by numba's `njit` with these options; it divides as numpy does, by zero as well.
+
+        An option that is not given is the caller's: what an inlined kernel calls is inlined, too.
+        """
+
+        def compiled(function: Function) -> Function:
+            # numba asks for the folder now and never again, and other packages keep theirs.
+            before, _settings.CACHE_DIR = _settings.CACHE_DIR, str(folder)
+            try:
+                made = njit(cache=folder is not None, error_model="numpy", **options)
+                return cast("Function", made(function))
+            finally:
+                _settings.CACHE_DIR = before
+
+        return compiled
+
+    return kernel
 
 
-def kernel(**options: Any) -> Callable[[Function], Function]:
-    """Compile a function by numba's `njit` with these options; it divides as numpy does, by zero as well.
-
-    An option that is not given is the caller's: what an inlined kernel calls is inlined, too.
-    """
-
-    def compiled(function: Function) -> Function:
-        # numba asks for the folder now and never again, and other packages keep theirs.
-        before, _settings.CACHE_DIR = _settings.CACHE_DIR, str(_folder)
-        try:
-            made = njit(cache=_folder is not None, error_model="numpy", **options)
-            return cast("Function", made(function))
-        finally:
-            _settings.CACHE_DIR = before
-
-    return compiled
+_folder = cache_folder(Path(__file__).parent, "eye", "smell", "rooms")
+kernel = kernels_cached_in(_folder)

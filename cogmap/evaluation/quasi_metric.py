@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 import scipy.sparse as sp
 from jaxtyping import Float
-from scipy.sparse.csgraph import dijkstra
 from scipy.stats import spearmanr
 
 from cogmap.evaluation.pose_agreement import motion_distances
+from cogmap.graph.shortest_paths import Paths
 
 
 class QuasiMetric(NamedTuple):
@@ -53,7 +53,7 @@ def quasi_metric(
     views = len(poses)
     starts = rng.choice(views, min(sources, views), replace=False)
     ends = rng.choice(views, min(targets, views), replace=False)
-    geodesic = dijkstra(graph, indices=starts)[:, ends]
+    geodesic = Paths(graph).lengths(starts, ends)
     motion = motion_distances(poses[starts], poses[ends])
     joined = np.isfinite(geodesic) & (motion > 0)
     ratio = np.where(joined, geodesic / np.where(motion > 0, motion, 1), np.nan)

@@ -3,12 +3,12 @@
 import typing
 
 import numpy as np
-from numba import njit
+
+from cogmap.kernels import kernel
 
 
-# Compiled anew by each process, in half a second: numba's own cache wants a folder that can be written, and
-# that of `arena.kernels` a package that graphs may not know. Partitions by numpy take five times as long.
-@njit(nogil=True)
+# Partitions by numpy take five times as long.
+@kernel(nogil=True)
 @typing.no_type_check
 def offer(scores: np.ndarray, best: np.ndarray, names: np.ndarray, first: int, axis: int) -> None:
     """Offer each row of `scores`, or with `axis` 0 each column, to its ranking; the names count from `first`.

@@ -88,7 +88,7 @@ def largest_ratios(
     """
     X = rng.uniform(size=(points, cube))
     seen = geodesic(X, neighbours) if metric == "geodesic" else euclidean(X)
-    spread = farthest_points(seen, max(count for _, count in sizes), start=0).distances
+    spread = seen.among(farthest_points(seen, max(count for _, count in sizes), start=0).indices)
     found = []
     for dimension, count in sizes:
         (bars,) = rips_bars(spread[:count, :count], [dimension])

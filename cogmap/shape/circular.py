@@ -6,11 +6,11 @@ import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float, Int
 from ripser import ripser
-from scipy.sparse.csgraph import dijkstra
 from scipy.sparse.linalg import cg, lsqr
 
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import checked_graph, components, edge_differences
+from cogmap.graph.shortest_paths import Paths
 from cogmap.shape.rips import farthest_points, ratios
 from cogmap.threads import one_thread
 
@@ -62,17 +62,15 @@ def circular_coordinate(graph: sp.csr_array, *, landmarks: int = 150, seed: int 
     graph = checked_graph(graph)
     points = np.flatnonzero(components(graph).labels == 0)
     piece = sp.csr_array(graph[points][:, points])
-    paths: list[Float[np.ndarray, "points"]] = []
-
-    def measured(point: int) -> Float[np.ndarray, "points"]:
-        paths.append(np.asarray(dijkstra(piece, indices=[point])[0]))
-        return paths[-1]
-
-    spread = farthest_points(measured, landmarks, int(np.random.default_rng(seed).integers(len(points))))
-    birth, death, cocycle = _most_persistent(spread.distances)
+    paths = Paths(piece)
+    start = int(np.random.default_rng(seed).integers(len(points)))
+    taken = farthest_points(paths, landmarks, start).indices
+    lengths = paths.lengths(taken)
+    distances = lengths[:, taken]
+    birth, death, cocycle = _most_persistent(distances)
     with one_thread():
-        at_landmarks = _smooth_cocycle(spread.distances, (birth + death) / 2, cocycle)
-        phase = _harmonic(piece, _spread_out(np.stack(paths), at_landmarks))
+        at_landmarks = _smooth_cocycle(distances, (birth + death) / 2, cocycle)
+        phase = _harmonic(piece, _spread_out(lengths, at_landmarks))
     rank = np.argsort(np.argsort(np.mod(phase, 2 * np.pi), kind="stable"), kind="stable")
     everywhere = np.full(graph.shape[0], np.nan)
     everywhere[points] = 2 * np.pi * (rank + 0.5) / len(points) - np.pi

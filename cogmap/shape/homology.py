@@ -6,7 +6,8 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 import scipy.sparse as sp
-from jaxtyping import Float, Num
+from jaxtyping import Float, Int, Num
+from joblib import Parallel, cpu_count, delayed
 from scipy.sparse.csgraph import connected_components
 
 from cogmap.errors import CogmapError
@@ -131,20 +132,30 @@ def betti(
         For NaN, wrong shapes, asymmetric or negative distances, an unknown metric, too few points.
     """
     _check_options(metric, max_dimension, landmarks, draws)
-    distances_from, points = _metric_space(X, metric, neighbours)
+    space = _metric_space(X, metric, neighbours)
     judged: betti_thresholds.Metric = "geodesic" if metric == "geodesic" or sp.issparse(X) else "euclidean"
     wanted = [landmarks[dimension == 2] for dimension in range(max_dimension + 1)]
-    starts = np.random.default_rng(seed).integers(points, size=draws)
-    drawn = []
-    for start in starts:
-        spread = rips.farthest_points(distances_from, max(wanted), int(start))
-        drawn.append(
-            [
-                _find(spread, dimension, count, points=points, metric=judged, neighbours=neighbours)
-                for dimension, count in enumerate(wanted)
-            ]
-        )
-    chosen, votes = zip(*(_majority(found) for found in zip(*drawn, strict=True)), strict=True)
+    starts = np.random.default_rng(seed).integers(len(space), size=draws)
+    # Draws and dimensions know nothing of each other; of paths all cores take care for each draw.
+    on_all_cores = Parallel(cpu_count(), backend="threading")
+    spreads = on_all_cores(delayed(rips.farthest_points)(space, max(wanted), int(start)) for start in starts)
+    tasks = []
+    for spread in spreads:
+        distances = space.among(spread.indices)
+        for dimension, count in enumerate(wanted):
+            # Here, because a threshold that must be simulated is kept for the draws that follow.
+            limit = betti_thresholds.threshold(
+                judged,
+                dimension,
+                points=len(space),
+                landmarks=min(count, len(distances)),
+                neighbours=neighbours,
+            )
+            held = spread.held if judged == "euclidean" and dimension == 0 else None
+            tasks.append(delayed(_find)(distances[:count, :count], dimension, limit, held))
+    found = on_all_cores(tasks)
+    by_dimension = (tuple(found[dimension :: len(wanted)]) for dimension in range(len(wanted)))
+    chosen, votes = zip(*map(_majority, by_dimension), strict=True)
     return Betti(
         numbers=tuple(found.number for found in chosen),
         bars=tuple(found.bars for found in chosen),
@@ -152,32 +163,28 @@ def betti(
         votes=votes,
         draws=draws,
         landmarks=tuple(found.landmarks for found in chosen),
-        points=points,
+        points=len(space),
         metric=metric,
     )
 
 
 def _find(
-    spread: rips.Landmarks,
+    distances: Float[np.ndarray, "landmarks landmarks"],
     dimension: int,
-    count: int,
-    *,
-    points: int,
-    metric: betti_thresholds.Metric,
-    neighbours: int,
+    limit: float,
+    held: Int[np.ndarray, "landmarks"] | None,
 ) -> _Found:
-    distances = spread.distances[:count, :count]
-    limit = betti_thresholds.threshold(
-        metric, dimension, points=points, landmarks=len(distances), neighbours=neighbours
-    )
-    if metric == "euclidean" and dimension == 0:
-        distances = _without_outliers(spread, limit)
+    """Compute the bars; given how many points each landmark holds, leave out those that are outliers."""
+    landmarks = len(distances)
+    if held is not None:
+        distances = _without_outliers(distances, held / held.sum(), limit)
     (bars,) = rips.rips_bars(distances, [dimension])
-    return _Found(bars, limit, len(distances))
+    return _Found(bars, limit, landmarks)
 
 
-def _without_outliers(spread: rips.Landmarks, limit: float) -> Float[np.ndarray, "kept kept"]:
-    distances, share = spread.distances, spread.held / spread.held.sum()
+def _without_outliers(
+    distances: Float[np.ndarray, "landmarks landmarks"], share: Float[np.ndarray, "landmarks"], limit: float
+) -> Float[np.ndarray, "kept kept"]:
     while True:
         (bars,) = rips.rips_bars(distances, [0])
         closed = bars[rips.ratios(bars) <= limit, 1].max(initial=0.0)
@@ -202,7 +209,7 @@ def _over(found: Float[np.ndarray, "bars"], threshold: float, which: int) -> flo
 
 def _metric_space(
     X: Num[np.ndarray, "points *features"] | sp.csr_array, metric: Metric, neighbours: int
-) -> tuple[rips.DistancesFrom, int]:
+) -> rips.Space:
     if sp.issparse(X):
         if metric != "precomputed":
             raise CogmapError(
@@ -211,13 +218,12 @@ def _metric_space(
             )
         graph = checked_graph(X)
         _check_enough(graph.shape[0])
-        return rips.along(graph, neighbours), graph.shape[0]
+        return rips.along(graph, neighbours)
     if metric == "precomputed":
-        distances = _checked_distances(X)
-        return lambda point: distances[point], len(distances)
+        return rips.Given(_checked_distances(X))
     X = np.unique(np.asarray(checked_cloud(X)), axis=0)
     _check_enough(len(X))
-    return rips.geodesic(X, neighbours) if metric == "geodesic" else rips.euclidean(X), len(X)
+    return rips.geodesic(X, neighbours) if metric == "geodesic" else rips.euclidean(X)
 
 
 def _checked_distances(X: Num[np.ndarray, "points *features"]) -> Float[np.ndarray, "points points"]:

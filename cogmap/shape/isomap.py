@@ -6,7 +6,6 @@ import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float, Int
 from scipy.linalg import eigh
-from scipy.sparse.csgraph import dijkstra
 from sklearn.base import BaseEstimator, ClassNamePrefixFeaturesOutMixin, TransformerMixin
 from sklearn.utils import Tags
 from sklearn.utils.validation import check_is_fitted, validate_data
@@ -14,6 +13,7 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 from cogmap.graph.knn import Metric, nearest_points
 from cogmap.graph.neighbour_graph import SMALLEST, components, neighbour_graph, neighbourhood_means
 from cogmap.graph.points import Cloud
+from cogmap.graph.shortest_paths import Paths
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
 
@@ -161,7 +161,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         """Classical scaling of one piece."""
         count = min(self.landmarks, len(points))
         landmarks = np.sort(rng.choice(len(points), count, replace=False))
-        paths = dijkstra(self.graph_[points][:, points], indices=landmarks)
+        paths = Paths(self.graph_[points][:, points]).lengths(landmarks)
         squares = paths[:, landmarks] ** 2
         mean = squares.mean(axis=0)
         centred = -0.5 * (squares - mean - mean[:, None] + mean.mean())

@@ -1,50 +1,96 @@
 """Vietoris-Rips persistence on landmarks of a metric space."""
 
-from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 import scipy.sparse as sp
 from gudhi.sklearn import RipsPersistence
 from jaxtyping import Float, Int
-from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.distance import cdist
 
 from cogmap.graph.neighbour_graph import lengthen_shortcuts, neighbour_graph
+from cogmap.graph.shortest_paths import Paths
 
 Bars = Float[np.ndarray, "_ 2"]
 """Births and deaths, in the unit of the distances; each dimension has its own number of bars."""
-DistancesFrom = Callable[[int], Float[np.ndarray, "points"]]
-"""A metric, given as the distances from one point to all of them."""
+
+
+@runtime_checkable
+class Space(Protocol):
+    """A cloud with a metric."""
+
+    def __len__(self) -> int:
+        """Count the points."""
+
+    def nearer(self, point: int, nearest: Float[np.ndarray, "points"]) -> Float[np.ndarray, "points"]:
+        """Take the smaller of distances from points of this space, and those from another."""
+
+    def among(self, points: Int[np.ndarray, "some"]) -> Float[np.ndarray, "some some"]:
+        """Measure between some points, symmetric up to rounding; infinite between pieces."""
+
+
+@dataclass(frozen=True)
+class Straight:
+    """Points and the straight lines between them."""
+
+    points: Float[np.ndarray, "points features"]
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def nearer(self, point: int, nearest: Float[np.ndarray, "points"]) -> Float[np.ndarray, "points"]:
+        """See `Space`."""
+        return np.asarray(np.minimum(nearest, cdist(self.points[point : point + 1], self.points)[0]))
+
+    def among(self, points: Int[np.ndarray, "some"]) -> Float[np.ndarray, "some some"]:
+        """See `Space`."""
+        return np.asarray(cdist(self.points[points], self.points[points]))
+
+
+@dataclass(frozen=True)
+class Given:
+    """Distances that are known already."""
+
+    distances: Float[np.ndarray, "points points"]
+
+    def __len__(self) -> int:
+        return len(self.distances)
+
+    def nearer(self, point: int, nearest: Float[np.ndarray, "points"]) -> Float[np.ndarray, "points"]:
+        """See `Space`."""
+        return np.asarray(np.minimum(nearest, self.distances[point]))
+
+    def among(self, points: Int[np.ndarray, "some"]) -> Float[np.ndarray, "some some"]:
+        """See `Space`."""
+        return np.asarray(self.distances[np.ix_(points, points)])
+
+
+def euclidean(X: Float[np.ndarray, "points features"]) -> Space:
+    """Straight lines."""
+    return Straight(X.astype(np.float64))
+
+
+def geodesic(X: Float[np.ndarray, "points features"], neighbours: int) -> Paths:
+    """Shortest paths in the neighbour graph, shunning its shortcuts; infinite between its pieces."""
+    return along(neighbour_graph(X, neighbours), neighbours)
+
+
+def along(graph: sp.csr_array, neighbours: int) -> Paths:
+    """Shortest paths in a graph that joins each point to so many neighbours, shunning its shortcuts."""
+    return Paths(lengthen_shortcuts(graph, neighbours // 5))
 
 
 class Landmarks(NamedTuple):
     """Points spread evenly over a cloud, the farthest first."""
 
     indices: Int[np.ndarray, "landmarks"]
-    distances: Float[np.ndarray, "landmarks landmarks"]
     held: Int[np.ndarray, "landmarks"]
     """How many points of the cloud have this landmark as their nearest."""
 
 
-def euclidean(X: Float[np.ndarray, "points features"]) -> DistancesFrom:
-    """Straight lines."""
-    X = X.astype(np.float64)
-    return lambda point: np.asarray(cdist(X[point : point + 1], X)[0])
-
-
-def geodesic(X: Float[np.ndarray, "points features"], neighbours: int) -> DistancesFrom:
-    """Shortest paths in the neighbour graph, shunning its shortcuts; infinite between its pieces."""
-    return along(neighbour_graph(X, neighbours), neighbours)
-
-
-def along(graph: sp.csr_array, neighbours: int) -> DistancesFrom:
-    """Shortest paths in a graph that joins each point to so many neighbours, shunning its shortcuts."""
-    graph = lengthen_shortcuts(graph, neighbours // 5)
-    return lambda point: np.asarray(dijkstra(graph, indices=[point])[0])
-
-
-def farthest_points(distances_from: DistancesFrom, count: int, start: int) -> Landmarks:
+def farthest_points(space: Space, count: int, start: int) -> Landmarks:
     """Take, from `start` on, always the point farthest from all taken so far.
 
     Stops short of `count` when every point coincides with a landmark. The first m landmarks are those that
@@ -54,21 +100,17 @@ def farthest_points(distances_from: DistancesFrom, count: int, start: int) -> La
     ----------
     Gonzalez (1985), Clustering to minimize the maximum intercluster distance.
     """
-    rows = [distances_from(start)]
     index = [start]
-    nearest = rows[0].copy()
+    nearest = space.nearer(start, np.full(len(space), np.inf))
     holder = np.zeros(len(nearest), dtype=np.int64)
     while len(index) < count:
         farthest = int(nearest.argmax())
         if nearest[farthest] <= 0:
             break
-        rows.append(distances_from(farthest))
-        holder[rows[-1] < nearest] = len(index)
-        np.minimum(nearest, rows[-1], out=nearest)
+        before, nearest = nearest, space.nearer(farthest, nearest)
+        holder[nearest < before] = len(index)
         index.append(farthest)
-    taken = np.array(index)
-    held = np.bincount(holder, minlength=len(taken))
-    return Landmarks(taken, np.stack([row[taken] for row in rows]), held)
+    return Landmarks(np.array(index), np.bincount(holder, minlength=len(index)))
 
 
 def rips_bars(distances: Float[np.ndarray, "points points"], dimensions: Sequence[int]) -> tuple[Bars, ...]:

@@ -14,11 +14,15 @@ from numba.core.dispatcher import Dispatcher
 import arena
 from arena import kernels
 from arena.eye.camera import Camera
-from arena.kernels import cache_folder, kernel
+from arena.kernels import kernels_cached_in
 from arena.rooms.arena import Arena
 
 PACKAGE = Path(arena.__file__).parent
 SOURCES = ["kernels.py", "eye/eye.py", "smell/smell.py", "rooms/deeper/rooms.py"]
+
+
+def folder_of(package: Path) -> Path | None:
+    return kernels.cache_folder(package, "eye", "smell", "rooms")
 
 
 @pytest.fixture
@@ -40,22 +44,22 @@ def bar(folder: Path) -> None:
 
 
 def test_the_cache_is_beside_the_package_and_stays_there(package: Path) -> None:
-    folder = cache_folder(package)
+    folder = folder_of(package)
     assert folder is not None
     assert folder.is_dir()
     assert folder.parent == package / "__pycache__"
-    assert cache_folder(package) == folder
+    assert folder_of(package) == folder
     assert not list(folder.iterdir())
 
 
 @pytest.mark.parametrize("name", SOURCES)
 def test_an_edit_leads_to_another_folder_in_place_of_the_first(package: Path, name: str) -> None:
-    before = cache_folder(package)
+    before = folder_of(package)
     assert before is not None
     (before / "kernel.nbc").touch()
     (stranger := before.with_name("kernels-0-0")).mkdir()
     (package / name).write_text("edited")
-    after = cache_folder(package)
+    after = folder_of(package)
     assert after is not None
     assert set(before.parent.iterdir()) == {after, stranger}
     assert after != before
@@ -65,11 +69,11 @@ def test_the_user_chooses_first_and_has_a_cache_of_their_own(
     package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bar(package / "__pycache__")
-    folder = cache_folder(package)
+    folder = folder_of(package)
     assert folder is not None
     assert folder.parent == tmp_path / "user" / "cogmap"
     monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path / "chosen"))
-    folder = cache_folder(package)
+    folder = folder_of(package)
     assert folder is not None
     assert folder.parent == tmp_path / "chosen"
 
@@ -80,9 +84,9 @@ def test_two_installations_keep_their_kernels_apart(package: Path) -> None:
     (other / "eye" / "eye.py").write_text("of another version")
     for root in (package, other):
         bar(root / "__pycache__")
-    first = cache_folder(package)
+    first = folder_of(package)
     assert first is not None
-    assert cache_folder(other) not in (None, first)
+    assert folder_of(other) not in (None, first)
     assert first.is_dir()
 
 
@@ -96,7 +100,7 @@ def test_no_cache_where_nothing_can_be_written(
         monkeypatch.delenv("XDG_CACHE_HOME")
         monkeypatch.setattr(os.path, "expanduser", lambda path: path)
     monkeypatch.chdir(tmp_path)
-    assert cache_folder(package) is None
+    assert folder_of(package) is None
     assert {path.name for path in tmp_path.iterdir()} == {"package", "user"}
 
 
@@ -115,10 +119,9 @@ def test_every_kernel_is_in_the_folder_and_its_source_in_the_hash() -> None:
 
 
 def test_a_kernel_divides_by_zero_and_leaves_the_setting_of_others(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kernels, "_folder", None)
     monkeypatch.setattr(config, "CACHE_DIR", "of others")
 
-    @kernel()
+    @kernels_cached_in(None)()
     def half(x: float) -> float:
         return 1.0 / x
 

@@ -143,14 +143,30 @@ def test_same_seed_and_any_order_give_the_same() -> None:
     assert str(one) != str(betti(X, seed=4, draws=2, landmarks=FEW))
 
 
+def test_bars_are_the_same_on_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
+    from cogmap.graph import shortest_paths  # noqa: PLC0415
+    from cogmap.shape import homology  # noqa: PLC0415
+
+    X = torus(700, np.random.default_rng(13))
+    several = []
+    for cores in (1, 3):
+        for module in (homology, shortest_paths):
+            monkeypatch.setattr(module, "cpu_count", lambda cores=cores: cores)
+        several.append(betti(X, landmarks=FEW))
+    assert str(several[0]) == str(several[1])
+    for one, other in zip(several[0].bars, several[1].bars, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
 def test_bars_are_those_of_the_landmarks() -> None:
     X = np.unique(cylinder(500, np.random.default_rng(7)), axis=0)
     found = betti(X, seed=11, draws=1, landmarks=(100, 60))
     start = int(np.random.default_rng(11).integers(500, size=1)[0])
-    spread = farthest_points(geodesic(X, 15), 100, start)
+    seen = geodesic(X, 15)
+    distances = seen.among(farthest_points(seen, 100, start).indices)
     assert found.landmarks == (100, 100, 60)
-    np.testing.assert_array_equal(found.bars[1], rips_bars(spread.distances, [1])[0])
-    np.testing.assert_array_equal(found.bars[2], rips_bars(spread.distances[:60, :60], [2])[0])
+    np.testing.assert_array_equal(found.bars[1], rips_bars(distances, [1])[0])
+    np.testing.assert_array_equal(found.bars[2], rips_bars(distances[:60, :60], [2])[0])
 
 
 def test_result_says_how_sure_it_is() -> None:

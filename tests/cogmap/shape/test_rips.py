@@ -5,7 +5,7 @@ from scipy.spatial.distance import cdist
 from sklearn.manifold import Isomap
 
 from cogmap.graph.neighbour_graph import SMALLEST
-from cogmap.shape.rips import euclidean, farthest_points, geodesic, ratios, rips_bars
+from cogmap.shape.rips import Given, euclidean, farthest_points, geodesic, ratios, rips_bars
 
 
 @pytest.fixture
@@ -65,7 +65,8 @@ def test_farthest_points_are_the_greedy_ones(cloud: np.ndarray) -> None:
         taken.append(int(distances[taken].min(axis=0).argmax()))
     found = farthest_points(euclidean(cloud), 30, start=7)
     np.testing.assert_array_equal(found.indices, taken)
-    np.testing.assert_allclose(found.distances, distances[np.ix_(taken, taken)], atol=1e-15)
+    among = euclidean(cloud).among(found.indices)
+    np.testing.assert_allclose(among, distances[np.ix_(taken, taken)], atol=1e-15)
     nearest = distances[:, taken].argmin(axis=1)
     np.testing.assert_array_equal(found.held, np.bincount(nearest, minlength=30))
     fewer = farthest_points(euclidean(cloud), 10, start=7)
@@ -90,11 +91,19 @@ def test_geodesics_are_those_of_isomap() -> None:
     X = np.random.default_rng(2).uniform(size=(150, 2))
     theirs = Isomap(n_neighbors=4).fit(X).dist_matrix_
     seen = geodesic(X, 4)
-    np.testing.assert_allclose([seen(point) for point in range(150)], theirs, rtol=1e-6)
+    np.testing.assert_allclose(seen.among(np.arange(150)), theirs, rtol=1e-6)
+
+
+def test_landmarks_along_a_graph_are_those_of_its_distances() -> None:
+    rng = np.random.default_rng(3)
+    seen = geodesic(np.concatenate([rng.uniform(size=(200, 2)), rng.uniform(size=(60, 2)) + 9]), 5)
+    ours, theirs = (farthest_points(space, 90, 4) for space in (seen, Given(seen.among(np.arange(260)))))
+    np.testing.assert_array_equal(ours.indices, theirs.indices)
+    np.testing.assert_array_equal(ours.held, theirs.held)
 
 
 def test_geodesics_pass_through_repeats() -> None:
     X = np.linspace(0, 1, 30)[:, None]
     seen = geodesic(np.concatenate([X, X]), 2)
-    assert seen(0)[30] == SMALLEST
-    np.testing.assert_allclose(seen(30)[[29, 59]], 1)
+    assert seen.lengths(np.array([0]))[0, 30] == SMALLEST
+    np.testing.assert_allclose(seen.lengths(np.array([30]), np.array([29, 59])), 1)
