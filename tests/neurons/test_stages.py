@@ -15,10 +15,14 @@ from neurons.stages import (
     AfferentStage,
     Batch,
     ChartStage,
+    CodedStage,
     CodeStage,
     OlfactionStage,
+    RecallStage,
     Stage,
     StripStage,
+    chosen,
+    joined,
 )
 
 EPOCH = 200
@@ -229,3 +233,11 @@ def test_a_stage_says_what_it_is() -> None:
     assert AfferentStage() == AfferentStage(epochs=1) != AfferentStage(epochs=2)
     with pytest.raises(TypeError, match="abstract"):
         Stage()  # type: ignore[abstract]
+
+
+def test_batches_put_together_are_chosen_from_by_view(toy: Network) -> None:
+    strips, _ = stream(60, 3)
+    views = torch.tensor([7, 50, 7])
+    for look in (StripStage.see, CodedStage.see, RecallStage.see):
+        whole = joined([look(toy, batch) for batch in strips.split(20)])
+        torch.testing.assert_close(chosen(whole, views), look(toy, strips[views]), equal_nan=True)
