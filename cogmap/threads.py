@@ -1,11 +1,18 @@
 """Same arrays whatever the number of threads."""
 
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
+from typing import TypeVar
 
 import cv2
 import torch
+from joblib import cpu_count
 from threadpoolctl import threadpool_limits
+
+Item = TypeVar("Item")
+Done = TypeVar("Done")
 
 
 @contextmanager
@@ -20,3 +27,21 @@ def one_thread() -> Iterator[None]:
     finally:
         torch.set_num_threads(threads)
         cv2.setNumThreads(others)
+
+
+def in_order(work: Callable[[Item], Done], items: Iterable[Item]) -> Iterator[Done]:
+    """Work on items in as many threads as there are cores; give what comes of them in their order.
+
+    Each item is one thread's alone, so that the number of threads changes no bit. No more than one item a
+    thread waits to be taken: memory does not grow with their number.
+    """
+    workers = cpu_count()
+    # torch counts threads for each thread anew
+    with ThreadPoolExecutor(workers, initializer=torch.set_num_threads, initargs=(1,)) as pool:
+        waiting: deque[Future[Done]] = deque()
+        for item in items:
+            waiting.append(pool.submit(work, item))
+            if len(waiting) > workers:
+                yield waiting.popleft().result()
+        while waiting:
+            yield waiting.popleft().result()

@@ -22,7 +22,7 @@ from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.inputs import check_views, checked_count, log_odours
 from cogmap.map.activity import Activity
 from cogmap.map.storage import read_map, write_map
-from cogmap.threads import one_thread
+from cogmap.threads import in_order, one_thread
 from neurons.angles import mean_angle
 from neurons.errors import NeuronsError
 from neurons.layers.retina import Retina
@@ -341,10 +341,12 @@ class CognitiveMap:
         return self._network
 
     def _strips(self, views: Any) -> Iterator[tuple[slice, Float[Tensor, "views features"]]]:
-        """Pass views through the retina in fixed batches."""
-        for start in range(0, views.shape[0], BATCH):
-            rows = slice(start, start + BATCH)
-            yield rows, self._retina(torch.from_numpy(np.ascontiguousarray(views[rows])))
+        """Pass views through the retina in fixed batches, ahead of who takes the strips."""
+
+        def look(rows: slice) -> tuple[slice, Float[Tensor, "views features"]]:
+            return rows, self._retina(torch.from_numpy(np.ascontiguousarray(views[rows])))
+
+        return in_order(look, (slice(first, first + BATCH) for first in range(0, views.shape[0], BATCH)))
 
     def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, ...]:
         """Rates of both populations, heading, recalled odour and position."""

@@ -1,5 +1,6 @@
 """Synchronisation of signs, then phases, over the atlas: lateral weights turn local axes into one compass."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -130,16 +131,17 @@ def _close_ring(
     """Find the scale at which loops close after one turn; it, the eigenvalue there, and the phases."""
     # free of the unit of code: 1 is one radian across a typical overlap
     tried = scales / np.sqrt(np.mean(omega**2))
-    values = _coarse_eigenvalues(overlaps, omega, tried, cells)
-    # where nothing closes the eigenvalue is 1 but for rounding, which has maxima too
-    risen = values - np.minimum.accumulate(values) > 1e-6
-    peaks = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:]) & risen[1:-1]) + 1
-    if not len(peaks):
+    values: list[float] = []
+    for value in _coarse_eigenvalues(overlaps, omega, tried, cells):
+        values.append(value)
+        # where nothing closes the eigenvalue is 1 but for rounding, which has maxima too
+        if len(values) > 2 and values[-3] < values[-2] >= value and values[-2] - min(values[:-1]) > 1e-6:
+            break  # one turn closes at the first maximum; those that follow are its harmonics
+    else:
         raise NeuronsError("no loop of charts closes after a turn; use more charts or more views")
-    best = peaks[0]
-    near = slice(best - 1, best + 2)
     # in log c, in which the grid is even: three points, one parabola, no residual
-    bend, slope, _ = np.polyfit(np.log(tried[near]), values[near], 2)
+    near = np.log(tried[len(values) - 3 : len(values)])
+    bend, slope, _ = np.polyfit(near, values[-3:], 2)
     scale = float(np.exp(-slope / (2 * bend)))
     eigenvalue, vector = overlaps.top(np.exp(-1j * scale * omega))
     return scale, eigenvalue, np.angle(vector)
@@ -147,8 +149,8 @@ def _close_ring(
 
 def _coarse_eigenvalues(
     overlaps: _Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"], cells: int
-) -> Float[np.ndarray, "scales"]:
-    """Bound the top eigenvalue from below at many scales, by Rayleigh and Ritz on cells that turn together.
+) -> Iterator[float]:
+    """Bound the top eigenvalue from below, scale by scale, by Rayleigh and Ritz on cells that turn together.
 
     Within a cell the phases follow c times the integral of ω from its root along shortest paths, which is
     close to what synchronisation finds; so the bound is tight, and its matrix is small.
@@ -173,11 +175,9 @@ def _coarse_eigenvalues(
     pair = cell[k] * size + cell[j]
     degree = np.bincount(cell[overlaps.edges.ravel()], minlength=size)
     norm = 1 / np.sqrt(np.outer(degree, degree))
-    values = []
     for scale in scales:
         turn = np.exp(-1j * scale * across)
         # bincount adds real numbers only, in the order of edges: the same bits every time
         entry = np.bincount(pair, turn.real, size**2) + 1j * np.bincount(pair, turn.imag, size**2)
         half = entry.reshape(size, size) * norm
-        values.append(eigh(half + half.conj().T, eigvals_only=True, subset_by_index=(size - 1, size - 1))[0])
-    return np.array(values)
+        yield eigh(half + half.conj().T, eigvals_only=True, subset_by_index=(size - 1, size - 1))[0]

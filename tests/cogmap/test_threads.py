@@ -1,8 +1,11 @@
+import time
+
 import pytest
 import torch
+from joblib import cpu_count
 from threadpoolctl import threadpool_info
 
-from cogmap.threads import one_thread
+from cogmap.threads import in_order, one_thread
 
 
 def test_one_thread_inside_and_what_was_before_outside() -> None:
@@ -14,3 +17,24 @@ def test_one_thread_inside_and_what_was_before_outside() -> None:
         raise RuntimeError("stop")
     assert torch.get_num_threads() == 2
     assert torch.is_grad_enabled()
+
+
+def test_what_comes_of_items_is_in_their_order_and_never_far_ahead() -> None:
+    begun: list[int] = []
+
+    def work(item: int) -> int:
+        begun.append(item)
+        time.sleep(0.01 * (item % 3))
+        assert torch.get_num_threads() == 1
+        return item**2
+
+    for item, square in enumerate(in_order(work, range(40))):
+        assert square == item**2
+        assert len(begun) <= item + 2 + cpu_count()
+
+
+def test_what_fails_in_a_thread_fails_where_it_is_taken() -> None:
+    found = in_order(lambda item: 1 / item, [2, 1, 0, 4])
+    assert [next(found), next(found)] == [0.5, 1]
+    with pytest.raises(ZeroDivisionError):
+        next(found)
