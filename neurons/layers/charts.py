@@ -110,9 +110,12 @@ class Charts(nn.Module):
         self.responsibility[won] += fed
         # with this batch in the sum a first win has the rate 1: the mean of what was won
         rate = 1 / self.responsibility[won]
-        tangents = self.tangents[won]
+        # `index_select` and `index_copy_` move whole rows, several times as fast as [...]
+        tangents = self.tangents.index_select(0, won)
         # from centres before they move: all that follows is of one state
-        residual = (codes[:, None] - self.centres[chart]).flatten(0, 1)
+        residual = (
+            codes[:, None] - self.centres.index_select(0, chart.flatten()).view(*chart.shape, -1)
+        ).flatten(0, 1)
         y = torch.einsum("ndc,nc->nd", tangents.index_select(0, flat), residual)
         weighted = weight[:, None] * y
         shift = torch.zeros(len(won), residual.shape[1]).index_add_(0, flat, weight[:, None] * residual)
@@ -120,7 +123,7 @@ class Charts(nn.Module):
         cross = torch.zeros(len(won), DIMENSIONS, DIMENSIONS).index_add_(
             0, flat, weighted[:, :, None] * y[:, None]
         )
-        self.centres[won] += rate[:, None] * shift
+        self.centres.index_add_(0, won, rate[:, None] * shift)
         drive = self.variances[won][:, :, None] * tangents
         # sums over what was won, not means yet: one multiplication by `rate` below makes means of all terms
         decay = torch.tril(cross, diagonal=-1) @ tangents
@@ -129,7 +132,7 @@ class Charts(nn.Module):
         self.variances[won] = length
         # views at its very centre drive a chart nowhere: it keeps the tangents that it was born with
         drive *= (1 / length)[:, :, None]
-        self.tangents[won] = torch.where(length[:, :, None] > 0, drive, tangents)
+        self.tangents.index_copy_(0, won, torch.where(length[:, :, None] > 0, drive, tangents))
 
     def freeze(self) -> None:
         """Make the tangents of each chart orthonormal."""

@@ -51,14 +51,14 @@ class Sanger(nn.Module):
         self.mean += (x.mean(dim=0) - self.mean) / step
         y = self(x)
         rate = 0.5 / (1 + step / 40)
-        # ⟨y (x − mean)ᵀ⟩ without a centred copy of x, which would take as long as the products; a mean over
-        # the batch, so that the shorter one at the end of an epoch has the same rate
-        hebb = (y.T @ x - y.sum(dim=0)[:, None] * self.mean) / len(x)
-        # the strict triangle: what earlier neurons explain; the decay of the neuron itself is in `drive`
-        decay = torch.tril(y.T @ y / len(x), diagonal=-1) @ self.weight
-        drive = self.variance[:, None] * self.weight
-        # all rows step from the same weights: two products, not one a row
-        drive += rate * (hebb - decay - drive)
+        # a mean over the batch, so that the shorter one at the end of an epoch has the same rate
+        share = rate / len(x)
+        # what is kept of the weights, less the strict triangle: what earlier neurons explain. One product for
+        # both, and all rows step from the same weights
+        kept = torch.diag((1 - rate) * self.variance) - share * torch.tril(y.T @ y, diagonal=-1)
+        drive = torch.addmm(kept @ self.weight, y.T, x, alpha=share)
+        # ⟨y (x − mean)ᵀ⟩ without a centred copy of x, which would take as long as the products
+        drive.addr_(y.sum(dim=0), self.mean, alpha=-share)
         # unit rows by division and not by Oja's quadratic term, which diverges for rates near 1 / variance
         self.variance = drive.norm(dim=1)
         self.weight = drive / self.variance[:, None].clamp(min=1e-12)
