@@ -113,9 +113,8 @@ class Charts(nn.Module):
         # `index_select` and `index_copy_` move whole rows, several times as fast as [...]
         tangents = self.tangents.index_select(0, won)
         # from centres before they move: all that follows is of one state
-        residual = (
-            codes[:, None] - self.centres.index_select(0, chart.flatten()).view(*chart.shape, -1)
-        ).flatten(0, 1)
+        centres = self.centres.index_select(0, chart.flatten())
+        residual = codes.repeat_interleave(chart.shape[1], dim=0) - centres
         y = torch.einsum("ndc,nc->nd", tangents.index_select(0, flat), residual)
         weighted = weight[:, None] * y
         shift = torch.zeros(len(won), residual.shape[1]).index_add_(0, flat, weight[:, None] * residual)
