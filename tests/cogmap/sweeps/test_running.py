@@ -55,7 +55,8 @@ class Laboratory:
     def finished(self) -> set[str]:
         """What the diary calls the points that are put down."""
         found = set()
-        for file in (self.out / "points").glob("*.json"):
+        # not those that are being written, whose names begin with a dot
+        for file in (self.out / "points").glob("[!.]*.json"):
             point = json.loads(file.read_text(encoding="utf-8"))["point"]
             found.add(f"{point['nose']['noise']} {point['map']['charts']} {point['seed']}")
         return found
