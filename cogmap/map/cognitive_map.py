@@ -343,10 +343,13 @@ class CognitiveMap:
     def _strips(self, views: Any) -> Iterator[tuple[slice, Float[Tensor, "views features"]]]:
         """Pass views through the retina in fixed batches, ahead of who takes the strips."""
 
-        def look(rows: slice) -> tuple[slice, Float[Tensor, "views features"]]:
-            return rows, self._retina(torch.from_numpy(np.ascontiguousarray(views[rows])))
+        def batches() -> Iterator[tuple[slice, Tensor]]:
+            for first in range(0, views.shape[0], BATCH):
+                rows = slice(first, first + BATCH)
+                yield rows, torch.from_numpy(np.ascontiguousarray(views[rows]))
 
-        return in_order(look, (slice(first, first + BATCH) for first in range(0, views.shape[0], BATCH)))
+        # read by one thread alone: whatever lazy views are made of need not bear several
+        return in_order(lambda batch: (batch[0], self._retina(batch[1])), batches())
 
     def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, ...]:
         """Rates of both populations, heading, recalled odour and position."""

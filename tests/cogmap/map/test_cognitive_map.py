@@ -1,5 +1,6 @@
 import copy
 import inspect
+import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
@@ -302,3 +303,17 @@ def test_what_the_layers_refuse_the_map_refuses_in_the_same_words(
         young.fork()
     with pytest.raises(CogmapError, match="differ in views, odorants"):
         copy.deepcopy(cmap).merge(young)
+
+
+def test_lazy_views_are_read_by_the_thread_that_asks(walk: Recording, cmap: CognitiveMap) -> None:
+    readers: set[int] = set()
+
+    class Lazy:
+        shape, dtype, ndim = walk.views.shape, walk.views.dtype, 4
+
+        def __getitem__(self, rows: slice) -> np.ndarray:
+            readers.add(threading.get_ident())
+            return np.asarray(walk.views[rows])
+
+    np.testing.assert_array_equal(cmap.encode(Lazy()), cmap.encode(walk.views))
+    assert readers == {threading.get_ident()}
