@@ -73,3 +73,12 @@ def kernels_cached_in(folder: Path | None) -> Callable[..., Callable[[Function],
 
 _folder = cache_folder(Path(__file__).parent, "eye", "smell", "rooms")
 kernel = kernels_cached_in(_folder)
+
+
+def bare_kernel(**options: Any) -> Callable[[Function], Function]:
+    """Compile a kernel that makes no arrays, as by `kernel`.
+
+    numba then does not count who holds which array: an atomic instruction each time that one is taken out of
+    a tuple or given a name, which takes as long as painting several pixels.
+    """
+    return kernel(_nrt=False, **options)

@@ -40,16 +40,15 @@ def rendering() -> Figures:
     return {**figures, "perspective_two_threads_over_one": two_threads()}
 
 
-def painting(camera: Camera, room: Arena = ROOM, views: int = VIEWS) -> Callable[[], int]:
-    """Give work that paints views, some at a time, into the same images."""
-    where = poses(views, room)
-    batches = np.split(where, range(BATCH, views, BATCH))
-    images = np.empty((BATCH, camera.height, camera.width, 3), np.uint8)
+def painting(camera: Camera, room: Arena = ROOM, batch: int = BATCH) -> Callable[[], int]:
+    """Give work that paints views, so many at a time, into the same images."""
+    batches = np.split(poses(VIEWS, room), range(batch, VIEWS, batch))
+    images = np.empty((batch, camera.height, camera.width, 3), np.uint8)
 
     def paint() -> int:
         for batch in batches:
             camera.render(room, batch, out=images[: len(batch)])
-        return views
+        return VIEWS
 
     return paint
 
@@ -88,7 +87,7 @@ def two_threads() -> Figures:
     """Frames per second on two threads over those on one, in turn."""
     if numba.config.NUMBA_NUM_THREADS < 2:
         return {"not_measured": "numba has one thread here"}
-    paint = painting(CAMERAS["perspective_320x240"])
+    paint = painting(CAMERAS["perspective_320x240"], batch=VIEWS)
 
     def on(threads: int) -> int:
         numba.set_num_threads(threads)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 from typing import Annotated, Literal
 
 import numba
 import numpy as np
-from jaxtyping import Float, Int32, UInt8, UInt32
+from jaxtyping import Float, Int32, UInt8
 from pydantic import Field
 
 from arena.errors import ArenaError
 from arena.eye import raycast, render
 from arena.eye.background import backdrop
+from arena.eye.projection import Lens, direction, unsound
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 
@@ -145,11 +148,8 @@ class Camera(Settings):
             raise ArenaError(f"the camera has noise {self.noise:g}; give `rng`, a numpy.random.Generator")
         lens, ray = self._optics
         sky = backdrop(lens, arena.scene.floor[:3], arena.ceiling, arena.zenith)
-        words = _words(out)
-        # For fewer than four views a thread takes longer to start than to work.
-        alone = len(poses) < 4 or numba.get_num_threads() == 1
-        paint = render.render_alone if alone else render.render
-        paint(poses, arena.scene, lens, sky, ray, out, words)
+        rows = out.reshape(*shape[:2], 3 * self.width)
+        _in_threads(lambda at: render.render(poses[at], arena.scene, lens, sky, ray, rows[at]), len(poses))
         if rng is not None and self.noise:
             for image in out:
                 grain = rng.standard_normal(image.shape, dtype=np.float32)
@@ -166,7 +166,8 @@ class Camera(Settings):
         """
         poses = _checked(poses)
         out = np.empty((len(poses), self.width))
-        raycast.measure(poses, arena.scene.faces, self._optics[0], out)
+        faces, (lens, _) = arena.scene.faces, self._optics
+        _in_threads(lambda at: raycast.measure(poses[at], faces, lens, out[at]), len(poses))
         return out
 
     def identify(self, arena: Arena, poses: Poses) -> Int32[np.ndarray, "views height width"]:
@@ -185,23 +186,28 @@ class Camera(Settings):
         """
         poses = _checked(poses)
         out = np.empty((len(poses), self.height, self.width), np.int32)
-        raycast.identify(poses, arena.scene.faces, self._optics[0], out)
+        faces, (lens, _) = arena.scene.faces, self._optics
+        _in_threads(lambda at: raycast.identify(poses[at], faces, lens, out[at]), len(poses))
         return out
 
     @cached_property
-    def _optics(self) -> tuple[raycast.Lens, Float[np.ndarray, "width_and_one 2"]]:
+    def _optics(self) -> tuple[Lens, Float[np.ndarray, "width_and_one 2"]]:
         """The lens, and the direction (ahead, left) between columns."""
         panoramic = self.projection == "panoramic"
-        lens = raycast.Lens(self.width, self.height, self.focal_length, self.eye_height, panoramic)
-        return lens, np.array([raycast.direction(x, lens) for x in np.arange(self.width + 1.0)])
+        lens = Lens(self.width, self.height, self.focal_length, self.eye_height, panoramic)
+        return lens, np.array([direction(x, lens) for x in np.arange(self.width + 1.0)])
 
 
-def _words(images: Images) -> UInt32[np.ndarray, "views rows words"]:
-    """View the same memory as words of four bytes; no rows where an image's row is not of whole words."""
-    views, height, width, _ = images.shape
-    if width % 4:
-        return np.empty((views, 0, 0), np.uint32)
-    return images.reshape(views, height, 3 * width).view(np.uint32)
+def _in_threads(work: Callable[[slice], None], views: int) -> None:
+    """Do consecutive views each in a thread of its own, as many as numba has."""
+    # For fewer a thread takes longer to start than to work.
+    share = max(-(-views // numba.get_num_threads()), 16)
+    parts = [slice(first, first + share) for first in range(0, views, share)]
+    if len(parts) < 2:
+        work(slice(views))
+    else:
+        with ThreadPoolExecutor(len(parts)) as pool:
+            list(pool.map(work, parts))
 
 
 def _checked(poses: Poses) -> Float[np.ndarray, "views 3"]:
@@ -210,7 +216,7 @@ def _checked(poses: Poses) -> Float[np.ndarray, "views 3"]:
     # Of this layout only: the kernels would be compiled again for read-only poses.
     if poses.dtype != np.float64 or not poses.flags.carray:
         poses = np.require(poses, np.float64, ["C", "A", "W"])
-    bad = raycast.unsound(poses)
+    bad = unsound(poses)
     if bad >= 0:
         raise ArenaError(f"pose {bad} is {poses[bad]}; give finite x, y (m) and heading (rad)")
     return poses

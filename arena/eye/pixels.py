@@ -1,85 +1,83 @@
 """Pixels: the kernels that turn painted columns into the rows of an image.
 
-Columns come in fours, each red, green, blue and a spare byte a row, since twelve bytes are three whole words:
-to write an image of three-byte pixels column by column takes several times as long.
+Columns come in fours, each red, green, blue and a spare byte a row: to write an image of three-byte pixels
+column by column takes several times as long.
 """
 
 import typing
 
 import numpy as np
 
-from arena.eye.texture_sampling import in_blocks
-from arena.kernels import kernel
+from arena.eye.simd import write_four
+from arena.eye.texture_sampling import BITS, BLANK, in_blocks, lay
+from arena.kernels import bare_kernel
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
 def finish(
-    rows: tuple,
-    visible: tuple,
+    parts: np.ndarray,
+    count: int,
     backdrop: np.ndarray,
-    behind: int,
     column: np.ndarray,
     quad: np.ndarray,
-    slot: int,
+    rows: np.ndarray,
 ) -> None:
-    """Cut rows of a column to whole grey levels; the others that are visible are backdrop."""
-    # Unsigned for SIMD, as in `arena.eye.texture_sampling`.
-    at, source = np.uint64(slot), np.uint64(behind)
-    for n in range(in_blocks(4 * (visible[1] - visible[0]))):
-        k = np.uint64(4 * visible[0]) + np.uint64(n)
-        quad[at, k] = backdrop[source, k]
-    # No clip: the weights on a row add up to one, so that a sum lies between 0.5 and 255.5 but for rounding
-    # errors far below a half. By way of int32, the only whole numbers that SIMD turns float32 into.
-    for n in range(in_blocks(4 * (rows[1] - rows[0]))):
-        k = np.uint64(4 * rows[0]) + np.uint64(n)
-        quad[at, k] = np.uint8(np.int32(column[k]))
-    for n in range(32):  # these may have been cut, too
-        k = np.uint64(4 * rows[1]) + np.uint64(n)
-        quad[at, k] = backdrop[source, k]
+    """Cut a column to whole grey levels and make it blank; `rows` becomes which are more than backdrop.
+
+    Each of its `parts` tells which rows it has painted and how much of the column it fills.
+    """
+    first, last = parts[0].first, parts[0].last
+    for p in range(1, count):
+        first, last = min(first, parts[p].first), max(last, parts[p].last)
+    # Where some parts have painted the others are backdrop.
+    for p in range(count if count > 1 else 0):
+        one = parts[p]
+        for r in range(first, one.first):
+            lay(backdrop, 4 * r, one.share, column, r)
+        for r in range(one.last, last):
+            lay(backdrop, 4 * r, one.share, column, r)
+    # Unsigned for SIMD, as in `arena.eye.texture_sampling`. No clip: the weights on a row add up to one.
+    for n in range(in_blocks(4 * (last - first))):
+        k = np.uint64(4 * first) + np.uint64(n)
+        quad[k] = np.uint8(column[k] >> BITS)
+        column[k] = BLANK
+    rows[0], rows[1] = first, last
 
 
-@kernel()
+@bare_kernel(forceinline=True)
 @typing.no_type_check
-def emit(quad: np.ndarray, c: int, count: int, visible: tuple, out: np.ndarray) -> None:
-    """Copy up to four columns into the image."""
-    # Rows outside, so that what is written lies together: the four columns that are read stay in the cache.
-    for r in range(visible[0], visible[1]):
+def emit(
+    quad: np.ndarray, rows: np.ndarray, c: int, count: int, backdrop: np.ndarray, out: np.ndarray
+) -> None:
+    """Copy the rows of up to four columns into the image; columns to the right of them are copied later."""
+    first, last = rows[0, 0], rows[0, 1]
+    for q in range(1, count):
+        first, last = min(first, rows[q, 0]), max(last, rows[q, 1])
+    # Four rows at a time: that there may be more of them than painted does no harm.
+    first = max(min(first, last - 4), 0)
+    for q in range(count):
+        behind = backdrop[c + q if len(backdrop) > 1 else 0]
+        for k in range(4 * first, 4 * rows[q, 0]):
+            quad[np.uint64(q), np.uint64(k)] = behind[np.uint64(k)]
+        for k in range(4 * rows[q, 1], 4 * last):
+            quad[np.uint64(q), np.uint64(k)] = behind[np.uint64(k)]
+    if count == 4 and last - first >= 4:
+        # The last four rows may have been written already, as there need not be a multiple of four.
+        for r in range(first, last, 4):
+            write_four(quad, min(r, last - 4), out, c)
+        return
+    # Rows outside, so that what is written lies together: the columns that are read stay in the cache.
+    for r in range(first, last):
         for q in range(count):
             for k in range(3):
-                out[r, c + q, k] = quad[q, 4 * r + k]
+                out[r, 3 * (c + q) + k] = quad[q, 4 * r + k]
 
 
-@kernel(forceinline=True)
+@bare_kernel()
 @typing.no_type_check
-def emit_words(quad: np.ndarray, c: int, visible: tuple, out: np.ndarray) -> None:
-    """Copy four columns into the image, three words a row."""
-    # All of uint32: numba makes 64 bits of a sum with one of Python's numbers, half as many at a time.
-    at = np.uint32(c // 4 * 3)
-    one, two = np.uint32(1), np.uint32(2)
-    b, g, d = np.uint32(8), np.uint32(16), np.uint32(24)
-    # Little-endian: red is the lowest byte. The spare byte is zero, so that | puts pixels side by side.
-    for r in range(visible[0], visible[1]):
-        p0, p1, p2, p3 = quad[0, r], quad[1, r], quad[2, r], quad[3, r]
-        out[r, at] = p0 | p1 << d
-        out[r, at + one] = p1 >> b | p2 << g
-        out[r, at + two] = p2 >> g | p3 << b
-
-
-@kernel()
-@typing.no_type_check
-def fill(first: int, last: int, backdrop: np.ndarray, out: np.ndarray, words: np.ndarray) -> None:
-    """Copy rows that are nothing but backdrop into the image."""
-    # All columns alike: three words hold four pixels, and are the same along the row.
-    if len(words) > 0 and len(backdrop) == 1:
-        b, g, d = np.uint32(8), np.uint32(16), np.uint32(24)
-        for r in range(first, last):
-            red, green, blue = backdrop[0, 4 * r], backdrop[0, 4 * r + 1], backdrop[0, 4 * r + 2]
-            p = np.uint32(red) | np.uint32(green) << b | np.uint32(blue) << g
-            for w in range(0, words.shape[1], 3):
-                words[r, w], words[r, w + 1], words[r, w + 2] = p | p << d, p >> b | p << g, p >> g | p << b
-        return
-    for r in range(first, last):
-        for c in range(out.shape[1]):
-            for k in range(3):
-                out[r, c, k] = backdrop[c if len(backdrop) > 1 else 0, 4 * r + k]
+def copy(image: np.ndarray, out: np.ndarray) -> None:
+    """Copy an image."""
+    for r in range(len(out)):
+        for k in range(out.shape[1]):
+            out[np.uint64(r), np.uint64(k)] = image[np.uint64(r), np.uint64(k)]

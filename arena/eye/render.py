@@ -19,10 +19,10 @@ How a column is painted::
     row -1  +---+---+
               ^   ^ parts of the column
 
-1. `raycast.project` turns the room's faces into the eye's frame, once per view, and lists the columns that
-   each one touches. Within a column 1 / depth of a face is linear, and so are the rows of its foot and top.
-2. `raycast.split` cuts the column where a face begins or ends inside it. All rays of a part meet the same
-   faces; `raycast.meet` sorts them from near to far along the part's middle ray.
+1. `projection.place` turns the room's faces into the eye's frame, once per view.
+2. `stretches.look` cuts the image where what is in sight changes, and lists the faces of each stretch from
+   near to far. A column that is cut is painted in parts, each with the faces of its own stretch. Within a
+   column 1 / depth of a face is linear, and so are the rows of its foot and top.
 3. `_climb` lets the gaze climb each part from the last row up, as in the drawing. What has been passed is
    never painted again, and so the near hides the far. A solid lower than the eye is ground from its near face
    to its far one, in the colour of its top.
@@ -33,82 +33,85 @@ How a column is painted::
 5. Above the last face is the backdrop. `pixels.finish` cuts the sums to bytes, and four columns at a time are
    copied into the image.
 
-Columns and not rows, because textures are stored from the floor up: a column reads them in order, four
-channels in one instruction.
+Geometry is in doubles, colours are whole numbers (`arena.eye.simd`): an image is the same to the bit on every
+processor.
+
+Columns and not rows, because textures are stored from the floor up: a column reads them in order, the
+channels of several texels in one instruction.
 """
 
 import typing
 
 import numpy as np
-from jaxtyping import Float, UInt8, UInt32
-from numba import prange
+from jaxtyping import Float, UInt8
 
-from arena.eye import pixels, raycast
+from arena.eye import pixels, stretches
 from arena.eye import texture_sampling as sampling
-from arena.eye.raycast import Faces, Lens, Poses, along, nearness
+from arena.eye.background import Backdrop
+from arena.eye.projection import PROJECTED_FACE, Lens, Poses, met_at, place, ray_at
 from arena.eye.scene import Scene
-from arena.eye.texture_sampling import BLOCK, Ground, in_blocks
-from arena.kernels import kernel
+from arena.eye.stretches import Sweep
+from arena.eye.texture_sampling import BLANK, BLOCK, Ground
+from arena.kernels import bare_kernel, kernel
 from arena.rooms.materials import LEVELS, TEXEL
 
+UPRIGHT = np.dtype([("face", "i8"), *((name, "f8") for name in ("near", "next_near", "along", "next_along"))])
+"""A face of a stretch, and at the two sides of a part of a column 1 / depth and how far along its material
+(m) it is met."""
 
-class Column(typing.NamedTuple):
-    """Where a column of the image looks."""
-
-    eye: tuple[float, ...]
-    """Where the eye stands (m) and the direction in the room of the column's middle ray."""
-    rays: tuple[float, ...]
-    """Directions (ahead, left) at the column's two sides."""
-    rows: tuple[int, int]
-    """The first row that is not backdrop, and the first below it that is again."""
-    behind: int
-    """Its column of the backdrop."""
-
-
-class Sight(typing.NamedTuple):
-    """The faces of a room as the eye sees them, of the dtypes in `arena.eye.raycast`."""
-
-    faces: Faces
-    projected: np.ndarray
-    touches: np.ndarray
-    hits: np.ndarray
-    """For one part of a column, from near to far."""
+PART = np.dtype([("first", "i8"), ("last", "i8"), ("share", "f8")])
+"""A part of a column: which rows it has painted, the first and past the last, and how much of the column it
+fills."""
 
 
 class Brush(typing.NamedTuple):
-    """Memory that a column is painted in; the next column uses it again."""
+    """Memory that a view is painted in; the next one uses it again."""
 
+    projected: np.ndarray
+    """The room's faces as the eye sees them, of dtype `arena.eye.PROJECTED_FACE`."""
+    sweep: Sweep
+    uprights: np.ndarray
+    """The faces of one stretch, from near to far."""
+    parts: np.ndarray
+    """Those of one column."""
     strip: np.ndarray
     """Texels of a wall from the floor up, averaged along what a part of the column covers."""
-    texel: np.ndarray
-    """For each row the first texel of the strip that it covers."""
-    mix: tuple[np.ndarray, ...]
-    """For each row the weights of that texel and the next two."""
     column: np.ndarray
     """Red, green, blue and a spare number for each row, summed up part by part."""
+    quad: np.ndarray
+    """Four columns that are finished."""
+    rows: np.ndarray
+    """For each of the four the rows that are more than backdrop: the first, and past the last."""
 
 
-# Tuples of arrays go to kernels that are inlined: there LLVM removes the counts of references that numba adds
-# each time an array is taken out of a tuple, which would cost more than the painting.
 @kernel(forceinline=True)
 @typing.no_type_check
+def _brush(scene: Scene, length: int) -> Brush:
+    """Make room for views of a room; a column of the backdrop has this length."""
+    rows = 2 * len(scene.faces)
+    return Brush(
+        np.empty(len(scene.faces), PROJECTED_FACE),
+        stretches.sweep_over(len(scene.faces)),
+        np.empty(rows, UPRIGHT),
+        # A stretch begins at the left of the image, at an end of a row, or where a column does.
+        np.empty(2 * rows + 2, PART),
+        np.empty(4 * (int(scene.tallest / TEXEL) + BLOCK), np.uint16),
+        np.full(length, BLANK),
+        np.empty((4, length), np.uint8),
+        np.empty((4, 2), np.int64),
+    )
+
+
+# Kernels that make no arrays are bare: numba would count who holds which, an atomic instruction each time
+# that one is taken out of a tuple.
+@bare_kernel(forceinline=True)
+@typing.no_type_check
 def _paint_face(
-    rows: tuple,
-    part: tuple,
-    scale: float,
-    met: tuple,
-    rays: tuple,
-    lens: Lens,
-    scene: Scene,
-    brush: Brush,
+    rows: tuple, weight: float, scale: float, one: np.record, lens: Lens, scene: Scene, brush: Brush
 ) -> None:
     """Add a face to the rows between two image heights of a part of a column, `scale` pixels to a metre."""
-    one, face, projected = met
-    gain = face.left_light if projected.aside > 0.0 else face.right_light
-    # Over the whole column the ends are known: a division less for each.
-    stretch = one.start, one.stop
-    if part != (0.0, 1.0):
-        stretch = along(part[0], one, face, projected, rays), along(part[1], one, face, projected, rays)
+    face = scene.faces[one.face]
+    gain = weight * (face.left_light if brush.projected[one.face].aside > 0.0 else face.right_light)
     top, bottom = rows
     # Row r looks at texel v - r step up the wall; v is that of the upper edge of the image.
     step, level = 1.0 / (scale * TEXEL), 0
@@ -119,47 +122,49 @@ def _paint_face(
     fade = sampling.fade_in(step)
     # A layer of no weight would change nothing and cost as much as the other: most walls need one only.
     for layer in range(2 if fade > 0.0 else 1):
-        share = (part[1] - part[0]) * (fade if layer == 1 else 1.0 - fade)
+        share = gain * (fade if layer == 1 else 1.0 - fade)
         if layer == 1:
             step, v, level = 0.5 * step, 0.5 * v, level + 1
         # One texel below and two above what is seen: a row is blended from three.
         up = max(int(v - bottom * step) - 1, 0), int(v - top * step) + 3
-        sampling.unroll(stretch, up, level, gain, face.start, scene.texels, scene.level_starts, brush.strip)
-        sampling.paint_wall(rows, share, (v - up[0], step), brush.strip, brush.texel, brush.mix, brush.column)
+        share /= 2.0 * sampling.row_size(step)
+        along = one.along, one.next_along
+        sampling.unroll(along, up, level, share, face.start, scene.texels, scene.level_starts, brush.strip)
+        sampling.paint_wall(rows, (v - up[0], step), brush.strip, brush.column)
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
 def _climb(
-    part: tuple,
-    met: int,
-    where: Column,
-    sight: Sight,
+    count: int,
+    part: np.record,
+    eye: tuple,
     scene: Scene,
     lens: Lens,
     backdrop: np.ndarray,
     brush: Brush,
 ) -> None:
-    """Let the gaze climb one part of a column past the faces it meets."""
-    weight = part[1] - part[0]
-    peak, gaze, horizon = float(where.rows[0]), float(where.rows[1]), 0.5 * lens.height
+    """Let the gaze climb one part of a column past so many faces.
+
+    `eye` is where the eye stands (m) and the direction in the room of the column's middle ray.
+    """
+    peak, gaze, horizon = float(part.first), float(part.last), 0.5 * lens.height
     ground, colour = 0.0, scene.floor
-    for i in range(met):
-        one, scale = sight.touches[sight.hits[i].touch], lens.focal * sight.hits[i].near
-        face, projected = sight.faces[one.face], sight.projected[one.face]
+    for k in range(count):
+        one = brush.uprights[k]
+        face, scale = scene.faces[one.face], 0.5 * lens.focal * (one.near + one.next_near)
         # Cut at the peak: the image of a near face reaches far above row 0, where there is no memory.
         foot = max(horizon + scale * (lens.eye - ground), peak)
         if foot < gaze:
-            rows = foot, gaze
-            sampling.paint_ground(rows, weight, colour, where.eye, lens, scene, brush.column)
+            sampling.paint_ground((foot, gaze), part.share, colour, eye, lens, scene, brush.column)
             gaze = foot
         # The far side of a solid is its back; there its top ends and the floor goes on.
-        if face.closed and projected.aside > 0.0:
+        if face.closed and brush.projected[one.face].aside > 0.0:
             ground, colour = 0.0, scene.floor
             continue
         top = max(horizon + scale * (lens.eye - face.height), peak)
         if top < gaze:
-            _paint_face((top, gaze), part, scale, (one, face, projected), where.rays, lens, scene, brush)
+            _paint_face((top, gaze), part.share, scale, one, lens, scene, brush)
             gaze = top
         # Nothing of the column is left for what is behind.
         if gaze <= peak:
@@ -169,131 +174,110 @@ def _climb(
             ground, colour = face.height, Ground(face.red, face.green, face.blue, -1, 1.0)
     # Past the last face the ground goes on to the horizon, whatever it is: rooms need not be closed.
     if gaze > horizon:
-        rows = horizon, gaze
-        sampling.paint_ground(rows, weight, colour, where.eye, lens, scene, brush.column)
+        sampling.paint_ground((horizon, gaze), part.share, colour, eye, lens, scene, brush.column)
         gaze = horizon
-    sampling.paint_backdrop((peak, gaze), weight, backdrop, where.behind, brush.column)
+    sampling.paint_backdrop((peak, gaze), part.share, backdrop, brush.column)
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
-def _rows(within: tuple, faces: np.ndarray, lens: Lens, touches: np.ndarray) -> tuple[int, int]:
-    """Which rows of a column are not backdrop."""
+def _outline(count: int, scene: Scene, lens: Lens, uprights: np.ndarray, part: np.record) -> None:
+    """Find which rows of a part of a column are not backdrop."""
     horizon = 0.5 * lens.height
     top, bottom = horizon, horizon
-    for k in range(within[0], within[1]):
-        one = touches[k]
-        # 1 / depth is linear, so that it is largest at one of the ends.
-        near = lens.focal * max(nearness(one, one.begin), nearness(one, one.end))
-        top = min(top, horizon - near * (faces[one.face].height - lens.eye))
-        bottom = max(bottom, horizon + near * lens.eye)
-    # int cuts towards zero, which is a row too low only above the image, where it is row 0 anyway.
-    return max(int(top), 0), min(int(np.ceil(bottom)), lens.height)
+    for k in range(count):
+        one = uprights[k]
+        scale = 0.5 * lens.focal * (one.near + one.next_near)
+        top = min(top, horizon - scale * (scene.faces[one.face].height - lens.eye))
+        bottom = max(bottom, horizon + scale * lens.eye)
+    if scene.floor.start >= 0:
+        bottom = float(lens.height)
+    part.first, part.last = int(max(top, 0.0)), int(np.ceil(min(bottom, float(lens.height))))
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
-def _rays(ray: np.ndarray, c: int) -> tuple:
-    return (ray[c, 0], ray[c, 1]), (ray[c + 1, 0], ray[c + 1, 1])
+def _move_on(x: float, count: int, faces: np.ndarray, brush: Brush, ray: np.ndarray) -> None:
+    """Move so many faces of a stretch on: what was a part's right is the next one's left, and x the right."""
+    ahead, left = ray_at(x, ray)
+    for k in range(count):
+        one = brush.uprights[k]
+        face, to = faces[one.face], brush.projected[one.face]
+        one.near, one.along = one.next_near, one.next_along
+        one.next_near = met_at(to, (ahead, left))
+        where = to.at + (to.along * ahead + to.across * left) / one.next_near
+        # Cut, as where a face is seen edge-on the least rounding would lead far along it.
+        one.next_along = face.offset + min(max(where, 0.0), to.length)
 
 
-@kernel()
+@bare_kernel()
 @typing.no_type_check
 def _paint(
     pose: np.ndarray,
     scene: Scene,
     lens: Lens,
-    backdrop: np.ndarray,
+    backdrop: Backdrop,
     ray: np.ndarray,
+    brush: Brush,
     out: np.ndarray,
-    words: np.ndarray,
 ) -> None:
     """Paint the view from one pose."""
-    faces = scene.faces
-    projected, span = np.empty(len(faces), raycast.PROJECTED_FACE), np.empty((2 * len(faces), 2))
-    first, listed = raycast.project(pose, faces, lens, projected, span)
-    touches, hits = np.empty(len(listed), raycast.COLUMN_SPAN), np.empty(len(span), raycast.RAY_HIT)
-    # Both ends of all that may touch a column, and the column's own.
-    edges, painted = np.empty(2 * len(span) + 2), np.empty((lens.width, 2), np.int64)
-    # A block longer than what is read: loops write whole blocks.
-    length = lens.height + BLOCK
-    # Zeros, as what is there is taken times zero, and memory that was never written may hold a NaN.
-    strip = np.zeros(4 * (int(faces["height"].max() / TEXEL) + BLOCK), np.float32)
-    # Of four bytes like the weights, so that SIMD takes as many of these as of those.
-    texel = np.empty(length, np.int32)
-    mix = np.empty(length, np.float32), np.empty(length, np.float32), np.empty(length, np.float32)
-    column, quad = np.empty(backdrop.shape[1], np.float32), np.empty((4, backdrop.shape[1]), np.uint8)
-    quad_words = quad.view(np.uint32)
-    brush = Brush(strip, texel, mix, column)
-    sight = Sight(faces, projected, touches, hits)
-    for c in range(lens.width):
-        within = first[c], first[c + 1]
-        raycast.touch(c, within, listed, _rays(ray, c), faces, projected, span, touches)
-        painted[c] = _rows(within, faces, lens, touches)
-    # A plain floor is part of the backdrop, a textured one is painted to the last row.
-    if scene.floor.start >= 0:
-        painted[:, 1] = lens.height
-    # Rows that are backdrop in every column, often half the image, are copied row by row.
-    visible = painted[:, 0].min(), painted[:, 1].max()
-    pixels.fill(0, visible[0], backdrop, out, words)
-    pixels.fill(visible[1], lens.height, backdrop, out, words)
+    faces, sweep, uprights, parts = scene.faces, brush.sweep, brush.uprights, brush.parts
+    place(pose, faces, lens, brush.projected, sweep.span)
+    # Most of the image is backdrop, which is copied in no time; columns are laid over it.
+    pixels.copy(backdrop.image, out)
     cosine, sine = np.cos(pose[2]), np.sin(pose[2])
-    for c in range(lens.width):
-        within, rays, rows = (first[c], first[c + 1]), _rays(ray, c), (painted[c, 0], painted[c, 1])
-        # The mean of the rays at the sides, not that through the middle: it moves as they do.
-        ahead, left = 0.5 * (ray[c, 0] + ray[c + 1, 0]), 0.5 * (ray[c, 1] + ray[c + 1, 1])
-        eye = pose[0], pose[1], cosine * ahead - sine * left, sine * ahead + cosine * left
-        where = Column(eye, rays, rows, c if len(backdrop) > 1 else 0)
-        # Half a grey level, so that cutting the sums to bytes rounds them.
-        for n in range(in_blocks(4 * (rows[1] - rows[0]))):
-            column[np.uint64(4 * rows[0]) + np.uint64(n)] = np.float32(0.5)
-        for p in range(raycast.split(within, faces, lens, touches, edges)):
-            part = edges[p], edges[p + 1]
-            met = raycast.meet(0.5 * (part[0] + part[1]), within, faces, projected, touches, hits)
-            _climb(part, met, where, sight, scene, lens, backdrop, brush)
-        pixels.finish(rows, visible, backdrop, where.behind, column, quad, c & 3)
-        # Four columns of three bytes are three words; images of another width go byte by byte.
-        if c & 3 == 3 and len(words) > 0:
-            pixels.emit_words(quad_words, c - 3, visible, words)
-        elif c & 3 == 3 or c == lens.width - 1:
-            pixels.emit(quad, c & ~3, (c & 3) + 1, visible, out)
+    stretches.begin(sweep)
+    end, seen = stretches.look(0.0, sweep, (faces, brush.projected), lens, ray)
+    begin, count = 0.0, 0
+    while begin < lens.width:
+        for k in range(seen):
+            uprights[k].face = sweep.seen[k]
+        stop, met, same = end, seen, True
+        while same and stop < lens.width:
+            end, seen = stretches.look(stop, sweep, (faces, brush.projected), lens, ray)
+            same = seen == met
+            for k in range(met if same else 0):
+                same = same and uprights[k].face == sweep.seen[k]
+            if same:
+                stop = end
+        _move_on(begin, met, faces, brush, ray)
+        for c in range(int(begin), int(np.ceil(stop))):
+            low, high = max(begin, float(c)), min(stop, c + 1.0)
+            part = parts[count]
+            part.share = high - low
+            _move_on(high, met, faces, brush, ray)
+            _outline(met, scene, lens, uprights, part)
+            # The mean of the rays at the sides, not that through the middle: it moves as they do.
+            ahead, left = 0.5 * (ray[c, 0] + ray[c + 1, 0]), 0.5 * (ray[c, 1] + ray[c + 1, 1])
+            eye = pose[0], pose[1], cosine * ahead - sine * left, sine * ahead + cosine * left
+            behind = backdrop.columns[c if len(backdrop.columns) > 1 else 0]
+            _climb(met, part, eye, scene, lens, behind, brush)
+            count += 1
+            # The next stretch goes on with this column.
+            if high < c + 1.0:
+                break
+            pixels.finish(parts, count, behind, brush.column, brush.quad[c & 3], brush.rows[c & 3])
+            count = 0
+            if c & 3 == 3 or c == lens.width - 1:
+                pixels.emit(brush.quad, brush.rows, c & ~3, (c & 3) + 1, backdrop.columns, out)
+        begin = stop
 
 
-@kernel()
-@typing.no_type_check
-def render_alone(
-    poses: Poses,
-    scene: Scene,
-    lens: Lens,
-    backdrop: UInt8[np.ndarray, "columns blocks"],
-    ray: Float[np.ndarray, "width_and_one 2"],
-    out: UInt8[np.ndarray, "views height width 3"],
-    words: UInt32[np.ndarray, "views rows words"],
-) -> None:
-    """Do the work of `render` without threads, which take a while to start."""
-    for i in range(len(poses)):
-        _paint(poses[i], scene, lens, backdrop, ray, out[i], words[i])
-
-
-@kernel(parallel=True)
+@kernel(nogil=True)
 @typing.no_type_check
 def render(
     poses: Poses,
     scene: Scene,
     lens: Lens,
-    backdrop: UInt8[np.ndarray, "columns blocks"],
+    backdrop: Backdrop,
     ray: Float[np.ndarray, "width_and_one 2"],
-    out: UInt8[np.ndarray, "views height width 3"],
-    words: UInt32[np.ndarray, "views rows words"],
+    out: UInt8[np.ndarray, "views height bytes"],
 ) -> None:
-    """Paint the view from every pose (m, m, rad) into `out`; views run in parallel.
+    """Paint the view from every pose (m, m, rad) into `out`, without the lock of the interpreter.
 
-    `backdrop` is an empty world, as in `arena.eye.background`; `ray` is the direction (ahead, left) between
-    columns; `words` is the memory of `out` in words of four bytes, or has no rows where a row is not made of
-    whole words.
+    `ray` is the direction (ahead, left) between columns.
     """
-    faces, (red, green, blue, start, light), texels, level_starts = scene
-    for i in prange(len(poses)):
-        # Packed again here: numba hands no tuple within a tuple to its threads.
-        room = Scene(faces, Ground(red, green, blue, start, light), texels, level_starts)
-        _paint(poses[i], room, lens, backdrop, ray, out[i], words[i])
+    brush = _brush(scene, backdrop.columns.shape[1])
+    for i in range(len(poses)):
+        _paint(poses[i], scene, lens, backdrop, ray, brush, out[i])

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Float, Int, Shaped, UInt8
 
-from arena.eye.raycast import FACE
+from arena.eye.projection import FACE
 from arena.eye.texture_sampling import BLOCK, Ground
 from arena.rooms.light import Light
 from arena.rooms.materials import ROOMS, mean_colour, mip_maps
@@ -17,11 +17,13 @@ class Scene(NamedTuple):
     """What there is to see in a room, under its light."""
 
     faces: Shaped[np.ndarray, " faces"]
-    """Of dtype `arena.eye.raycast.FACE`."""
+    """Of dtype `arena.eye.projection.FACE`."""
     floor: Ground
     texels: UInt8[np.ndarray, " bytes"]
     """Those of `arena.rooms.materials.MipMaps`, end to end."""
     level_starts: Int[np.ndarray, "levels_along levels_up"]
+    tallest: float
+    """Height of the tallest face, m."""
 
 
 @lru_cache(maxsize=ROOMS)
@@ -55,7 +57,13 @@ def scene(surfaces: Surfaces, floor: str | tuple[int, int, int], light: Light | 
     else:
         red, green, blue = (above * channel for channel in floor)
         start = -1
-    return Scene(faces, Ground(red, green, blue, start, above), _texels(names), mips.level_starts)
+    return Scene(
+        faces,
+        Ground(red, green, blue, start, above),
+        _texels(names),
+        mips.level_starts,
+        surfaces.height.max(),
+    )
 
 
 def _brightness(light: Light | None, normals: Float[np.ndarray, "faces 3"]) -> Float[np.ndarray, " faces"]:

@@ -8,13 +8,18 @@ import typing
 
 import numpy as np
 
-from arena.eye.raycast import Lens
-from arena.eye.simd import add_three
-from arena.kernels import kernel
+from arena.eye.projection import Lens
+from arena.eye.simd import add_between, add_colour, add_over, add_texels, set_texels
+from arena.kernels import bare_kernel
 from arena.rooms.materials import LEVELS, TEXEL, TILE
 
 BLOCK = 128
 """Loops run over whole blocks of at most this many numbers: what remains after the last is slow, not SIMD."""
+
+BITS = 7
+"""A column counts 128 a grey level: half of what two bytes hold, so that no sum of shares ever flows over."""
+BLANK = np.uint16(66)
+"""An empty column: half a grey level, so that to cut is to round, and what products cut off in the mean."""
 
 
 class Ground(typing.NamedTuple):
@@ -27,7 +32,7 @@ class Ground(typing.NamedTuple):
     light: float
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
 def in_blocks(count: int) -> int:
     """Round a count of numbers up to blocks of 32."""
@@ -35,7 +40,7 @@ def in_blocks(count: int) -> int:
     return (count + 31) & ~31
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
 def fade_in(stretch: float) -> float:
     """How much of the next coarser level to mix in, so that none comes suddenly: all at 2 texels."""
@@ -44,53 +49,35 @@ def fade_in(stretch: float) -> float:
     return min(max((stretch - 1.9) * (1.0 / (2.0 - 1.9)), 0.0), 1.0)
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
-def _blend(
-    texels: np.ndarray,
-    starts: tuple,
-    skip: int,
-    weight: tuple,
-    strip: np.ndarray,
-    at: int,
-    count: int,
-    layer: int,
-) -> None:
-    """Fill part of `strip` with a weighted sum of three stretches of texels; a second layer is added."""
-    # Unsigned: a signed index might count from the end, and to look at its sign each time rules SIMD out.
-    a, b, c = np.uint64(starts[0] + skip), np.uint64(starts[1] + skip), np.uint64(starts[2] + skip)
-    wa, wb, wc = weight
-    to, length, keep = np.uint64(at), in_blocks(count), np.float32(layer)
-    # Two loops without a branch inside, since a third of no weight need not be read. The first layer takes
-    # what was there before times zero, so the strip must never have held an inf or NaN.
-    if layer > 0 or wc > 0:
-        for n in range(length):
-            k = np.uint64(n)
-            mean = wa * np.float32(texels[a + k]) + wb * np.float32(texels[b + k])
-            strip[to + k] = mean + wc * np.float32(texels[c + k]) + keep * strip[to + k]
-    else:
-        for n in range(length):
-            k = np.uint64(n)
-            strip[to + k] = wa * np.float32(texels[a + k]) + wb * np.float32(texels[b + k])
+def lay(colours: np.ndarray, at: int, share: float, column: np.ndarray, row: int) -> None:
+    """Add a share (0..1) of a colour to a row: three bytes from an item on."""
+    red, green, blue = colours[at], colours[at + 1], colours[at + 2]
+    weight = np.uint16(32768.0 * share + 0.5)
+    add_colour(np.uint16(red << 8), np.uint16(green << 8), np.uint16(blue << 8), weight, column, row)
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
 def _lie(middle: float, half: float, share: float, start: int, across: int, length: int) -> tuple:
     """Where the three columns of texels under a stretch start, and their weights."""
     low, high = middle - half, middle + half
     i = int(np.floor(low))
     # At least one texel wide, as callers see to: the first is covered to its end, and no weight is negative.
-    share /= high - low
+    share *= 65535.0 / (high - low)
     second, third = min(high - i - 1.0, 1.0), max(0.0, high - i - 2.0)
     # Tiles are powers of two wide, so that & repeats them, to the left of zero as well.
     a, b = start + length * (i & across - 1), start + length * (i + 1 & across - 1)
     c = start + length * (i + 2 & across - 1)
-    weights = np.float32(share * (i + 1.0 - low)), np.float32(share * second), np.float32(share * third)
-    return (a, b, c), weights
+    return (a, b, c), (
+        np.uint16(share * (i + 1.0 - low)),
+        np.uint16(share * second),
+        np.uint16(share * third),
+    )
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
 def unroll(
     stretch: tuple,
@@ -116,74 +103,84 @@ def unroll(
     # only, the middle two: there are three columns to read and no more.
     middle, half = 0.5 * (u0 + u1), min(max(0.5 * (u1 - u0), 0.5), 1.0)
     base, across = start + level_starts[fine, level], TILE[0] >> fine
-    starts, weight = _lie(middle, half, gain * (1.0 - fade), base, across, length)
+    (a, b, c), weights = _lie(middle, half, gain * (1.0 - fade), base, across, length)
     v, at = up[0], 0
     while v < up[1]:
         # As far as the tile goes, so that a stretch of texels is read without wrapping.
         skip = 4 * v & length - 1
         n = min(4 * (up[1] - v), length - skip)
-        _blend(texels, starts, skip, weight, strip, at, n, 0)
+        for k in range(0, n, 32):
+            set_texels(texels, (a + skip + k, b + skip + k, c + skip + k), weights, strip, at + k)
         if fade > 0.0:  # before the next stretch, which overwrites what either layer leaves beyond this one
             base = start + level_starts[fine + 1, level]
-            more, faint = _lie(0.5 * middle, max(0.5 * half, 0.5), gain * fade, base, across >> 1, length)
-            _blend(texels, more, skip, faint, strip, at, n, 1)
+            (d, e, f), faint = _lie(
+                0.5 * middle, max(0.5 * half, 0.5), gain * fade, base, across >> 1, length
+            )
+            for k in range(0, n, 32):
+                add_texels(texels, (d + skip + k, e + skip + k, f + skip + k), faint, strip, at + k)
         at += n
         v += n // 4
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
-def _weigh(low: np.float32, size: np.float32, share: np.float32) -> tuple:
-    """Weights of the three texels under a stretch of one to two, and the first of them."""
-    # The lowest row of a wall seen from near would reach up to half a texel below it.
-    low = max(low, np.float32(0.0))
-    # Not negative any more, so that cutting towards zero is the floor. Constants are float32, too: one of
-    # double precision would make the whole loop so, and SIMD would take half as many at a time.
-    texel = np.int32(low)
-    rest = low - np.float32(texel)
-    beyond = rest + size - np.float32(1.0)
-    second, third = min(beyond, np.float32(1.0)), max(beyond - np.float32(1.0), np.float32(0.0))
-    return texel, share * (np.float32(1.0) - rest), share * second, share * third
+def _part(share: float) -> int:
+    """Turn a share (0..1) into parts of 65536, of which all is one too few for two bytes."""
+    return np.uint16(min(65536.0 * share, 65535.0))
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
-def paint_wall(
-    rows: tuple,
-    weight: float,
-    up: tuple,
-    strip: np.ndarray,
-    texel: np.ndarray,
-    mix: tuple,
-    column: np.ndarray,
-) -> None:
+def _position(texels: float) -> int:
+    """Turn a place (texels) into whole numbers of 2^-32, rounded to 2^-16: a column errs by .002 at most."""
+    return np.int64(np.floor(65536.0 * texels + 0.5)) << 16
+
+
+@bare_kernel(forceinline=True)
+@typing.no_type_check
+def row_size(step: float) -> float:
+    """How many texels a row averages over that covers so many: at least one, and at most two.
+
+    Less is linear interpolation. More, which happens at the coarsest level only, are the middle two.
+    """
+    return min(max(step, 1.0), 2.0)
+
+
+@bare_kernel(forceinline=True)
+@typing.no_type_check
+def paint_wall(rows: tuple, up: tuple, strip: np.ndarray, column: np.ndarray) -> None:
     """Add a wall to the rows between two image heights; `up` is where on `strip` row 0 is, and texels a row.
 
-    A row averages over what it covers, but never over less than a texel, which is linear interpolation.
+    The strip is of texels over twice `row_size(step)`: a column counts half of what the strip does.
     """
     top, bottom = rows
     v, step = up
-    first = int(top)
-    # float32 fills SIMD twice as well; on a strip of 128 texels it errs by 1e-5 of one.
-    count = int(np.ceil(bottom)) - first
-    size, stride = np.float32(max(step, 1.0)), np.float32(step)
-    low, share = np.float32(v - (first + 0.5) * step) - np.float32(0.5) * size, np.float32(weight) / size
-    t, (a, b, c) = texel, mix
-    for k in range(in_blocks(count)):
-        # From the first row, not from the row before: errors do not add up, and rows do not wait.
-        t[k], a[k], b[k], c[k] = _weigh(low - np.float32(k) * stride, size, share)
-    # These may be covered in part. They are set again, since a test within the loop would rule SIMD out; one
-    # row that is both is set twice, not added twice.
-    for k in (0, count - 1):
-        above, below = max(top, float(first + k)), min(bottom, first + k + 1.0)
-        size = np.float32(max(step * (below - above), 1.0))
-        low, share = np.float32(v - 0.5 * (above + below) * step), np.float32(weight * (below - above)) / size
-        t[k], a[k], b[k], c[k] = _weigh(low - np.float32(0.5) * size, size, share)
-    for k in range(count):
-        add_three(strip, t[k], a[k], b[k], c[k], column, first + k)
+    size = row_size(step)
+    first, last = int(top), int(np.ceil(bottom)) - 1
+    low, stride = _position(v - (last - 0.5) * step - 0.5 * size), _position(step)
+    if size == 1.0:
+        r = last - 1
+        # The lowest rows of a wall seen from near would reach up to half a texel below it.
+        while low < 0 and r > first:
+            add_between(strip, 0, 0, np.uint16(0), None, column, (r, 1))
+            low, r = low + stride, r - 1
+        add_between(strip, low, stride, np.uint16(0), None, column, (r, r - first))
+    else:
+        add_over(strip, low, stride, _part(size - 1.0), None, column, (last - 1, last - 1 - first))
+    # The first and the last may be covered in part, and may be the same.
+    for n in range(2 if first < last else 1):
+        r = last if n == 0 else first
+        above, below = max(top, float(r)), min(bottom, r + 1.0)
+        covered = row_size(step * (below - above))
+        low = _position(max(v - 0.5 * (above + below) * step - 0.5 * covered, 0.0))
+        share = _part((below - above) * size / covered)
+        if size == 1.0:
+            add_between(strip, low, 0, np.uint16(0), share, column, (r, 1))
+        else:
+            add_over(strip, low, 0, _part(covered - 1.0), share, column, (r, 1))
 
 
-@kernel()
+@bare_kernel()
 @typing.no_type_check
 def _paint_textured_floor(
     rows: tuple,
@@ -227,11 +224,10 @@ def _paint_textured_floor(
                     w = part * np.float32((u - i if p == 1 else i + 1 - u) * (v - j if q == 1 else j + 1 - v))
                     at = base + 4 * (up * (i + p & across - 1) + (j + q & up - 1))
                     # A product of float32 is off by at most 6e-8 of 255, some 1e-5 of a grey level.
-                    for k in range(3):
-                        column[4 * r + k] += w * np.float32(texels[at + k])
+                    lay(texels, at, w, column, r)
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
 def paint_ground(
     rows: tuple,
@@ -247,19 +243,20 @@ def paint_ground(
         _paint_textured_floor(rows, weight, ground, eye, lens, scene.texels, scene.level_starts, column)
         return
     top, bottom = rows
+    red, green, blue = (
+        np.uint16(256 * ground.red),
+        np.uint16(256 * ground.green),
+        np.uint16(256 * ground.blue),
+    )
     for r in range(int(top), int(np.ceil(bottom))):
-        share = np.float32(weight * (min(r + 1.0, bottom) - max(float(r), top)))
-        column[4 * r] += share * np.float32(ground.red)
-        column[4 * r + 1] += share * np.float32(ground.green)
-        column[4 * r + 2] += share * np.float32(ground.blue)
+        share = np.uint16(32768 * weight * (min(r + 1.0, bottom) - max(float(r), top)) + 0.5)
+        add_colour(red, green, blue, share, column, r)
 
 
-@kernel(forceinline=True)
+@bare_kernel(forceinline=True)
 @typing.no_type_check
-def paint_backdrop(rows: tuple, weight: float, backdrop: np.ndarray, behind: int, column: np.ndarray) -> None:
+def paint_backdrop(rows: tuple, weight: float, backdrop: np.ndarray, column: np.ndarray) -> None:
     """Add the backdrop to the rows between two image heights."""
     top, bottom = rows
     for r in range(int(top), int(np.ceil(bottom))):
-        share = np.float32(weight * (min(r + 1.0, bottom) - max(float(r), top)))
-        for c in range(3):
-            column[4 * r + c] += share * np.float32(backdrop[behind, 4 * r + c])
+        lay(backdrop, 4 * r, weight * (min(r + 1.0, bottom) - max(float(r), top)), column, r)

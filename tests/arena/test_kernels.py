@@ -161,12 +161,12 @@ def test_an_edit_shows_at_once_and_nothing_need_be_writable(tmp_path: Path) -> N
         return run.stdout, run.stderr.decode()
 
     before, folder = look()
-    assert list(Path(folder).rglob("render.render_alone-*.nbc"))
+    assert list(Path(folder).rglob("render.render-*.nbc"))
     view = Camera.panoramic(36, 12).render(Arena.load("furnished"), np.array([(0.3, -0.2, 1.0)]))
     assert before == view.tobytes()
     assert list((copy / "__pycache__").glob("kernels-*")) == [Path(folder)]
     # Inlined into kernels of another file, which stays as it is.
-    edited = source.replace("np.float32(share * second)", "np.float32(0.5 * share * second)")
+    edited = source.replace("np.uint16(share * second)", "np.uint16(0.5 * share * second)")
     assert edited != source
     helper.write_text(edited, encoding="utf-8")
     after, _ = look()

@@ -26,7 +26,7 @@ def test_depth_is_that_of_segment_queries(name: str, make: Callable[..., Camera]
         hits = [
             space.segment_query_first(tuple(pose[:2]), tuple(end), 0.0, pymunk.ShapeFilter()) for end in ends
         ]
-        np.testing.assert_allclose(depth, [20 * hit.alpha for hit in hits], rtol=0, atol=2e-4)
+        np.testing.assert_allclose(depth, [20 * hit.alpha for hit in hits], rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("camera", CAMERAS)
@@ -55,8 +55,8 @@ def test_ten_thousand_rays_are_those_of_segment_queries(name: str) -> None:
             space.segment_query_first(tuple(pose[:2]), tuple(end), 0.0, pymunk.ShapeFilter()) for end in ends
         ]
         worst = max(worst, np.abs(depth - [20 * hit.alpha for hit in hits]).max())
-    print(f"{name}: depth within {worst:.1e} m of pymunk's on 10,000 rays (bar 2e-4)")  # noqa: T201
-    assert worst < 2e-4
+    print(f"{name}: depth within {worst:.1e} m of pymunk's on 10,000 rays (bar 1e-9)")  # noqa: T201
+    assert worst < 1e-9
 
 
 @pytest.mark.parametrize("make", [Camera.perspective, Camera.panoramic])

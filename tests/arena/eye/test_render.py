@@ -4,8 +4,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from arena.eye.camera import Camera
-from arena.rooms.arena import Arena
+from arena.rooms.arena import Arena, gallery
 from arena.rooms.materials import texture
+from tests.arena.plain_eye import plain_view
 from tests.arena.reference import (
     BEFORE_BOXES,
     BEHIND_LOW_BOXES,
@@ -16,6 +17,26 @@ from tests.arena.reference import (
 )
 
 CAMERAS = [Camera.panoramic(120, 40), Camera.perspective(64, 48)]
+
+
+@pytest.mark.parametrize("name", [*gallery(), "low boxes"])
+def test_pixels_are_those_of_the_plain_eye(name: str) -> None:
+    room, poses = BEHIND_LOW_BOXES, BEFORE_BOXES
+    if name != "low boxes":
+        # The plain eye has no textured floors.
+        room = Arena.create(**{**Arena.load(name).model_dump(), "floor": (120, 110, 100)})
+        poses = free_poses(room, 2)
+    for camera in (
+        Camera.perspective(120, 90),
+        Camera.perspective(40, 120, field_of_view=0.3, eye_height=0.02),
+        Camera.perspective(64, 48, eye_height=0.1),
+        Camera.panoramic(180, 30),
+        Camera.panoramic(90, 15),
+    ):
+        wanted = np.rint([plain_view(room, camera, pose) for pose in poses])
+        error = np.abs(camera.render(room, poses) - wanted)
+        assert (error > 1).mean() < 1e-3
+        assert (error > 0).mean() < 0.03
 
 
 @pytest.mark.parametrize("name", ["furnished", "pillar"])

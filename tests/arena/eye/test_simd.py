@@ -1,20 +1,73 @@
 import numpy as np
+import pytest
 from numba import njit
 
-from arena.eye.simd import add_three
+from arena.eye import simd
 
 
 @njit
-def added(items: np.ndarray, first: int, weights: tuple, out: np.ndarray, item: int) -> None:
-    add_three(items, first, weights[0], weights[1], weights[2], out, item)
+def between(strip: np.ndarray, up: tuple, share: int, column: np.ndarray, rows: tuple) -> None:
+    simd.add_between(strip, up[0], up[1], np.uint16(0), np.uint16(share), column, rows)
 
 
-def test_three_items_are_added_to_one_and_no_other() -> None:
+@njit
+def over(strip: np.ndarray, up: tuple, more: int, column: np.ndarray, rows: tuple) -> None:
+    simd.add_over(strip, up[0], up[1], np.uint16(more), None, column, rows)
+
+
+@njit
+def mixed(texels: np.ndarray, starts: tuple, shares: tuple, strip: np.ndarray, at: int) -> None:
+    weights = np.uint16(shares[0]), np.uint16(shares[1])
+    simd.set_texels(texels, starts, weights, strip, at)
+    simd.add_texels(texels, starts, weights, strip, at)
+
+
+@njit
+def coloured(colour: tuple, share: int, column: np.ndarray, row: int) -> None:
+    red, green, blue = colour
+    simd.add_colour(np.uint16(red), np.uint16(green), np.uint16(blue), np.uint16(share), column, row)
+
+
+def strip_and_column() -> tuple[np.ndarray, np.ndarray]:
     rng = np.random.default_rng(0)
-    items, out = (rng.standard_normal((9, 4)).astype(np.float32) for _ in range(2))
-    weights = np.float32(0.3), np.float32(-1.5), np.float32(2.0)
-    for first, item in ((0, 8), (6, 0), (3, 5)):
-        wanted = out.copy()
-        wanted[item] += np.array(weights) @ items[first : first + 3]
-        added(items.ravel(), first, weights, out.reshape(-1), item)
-        np.testing.assert_allclose(out, wanted, rtol=1e-5, atol=1e-6)
+    return rng.integers(0, 20_000, (20, 4)).astype(np.uint16), rng.integers(0, 9, (12, 4)).astype(np.uint16)
+
+
+@pytest.mark.parametrize("more", [0, 20_000, 65_535])
+def test_a_row_is_the_sum_over_a_stretch_of_texels(more: int) -> None:
+    strip, column = strip_and_column()
+    at, step, wanted = 2.25, 1.0 + more / 65536, column.astype(float)
+    over(strip.ravel(), (int(at * 2**32), int(step * 2**32)), more, column.reshape(-1), (9, 5))
+    # Integrated finely, upwards from the lowest row.
+    fine = (np.arange(0, 2**14) + 0.5) / 2**14
+    for k in range(5):
+        where = at + k * step + fine * step
+        wanted[9 - k] += strip[where.astype(int)].mean(0) * step
+    np.testing.assert_allclose(column, wanted, atol=6)
+
+
+def test_a_row_lies_between_two_texels() -> None:
+    strip, column = strip_and_column()
+    wanted = column.astype(float)
+    between(strip.ravel(), (int(3.5 * 2**32), int(0.375 * 2**32)), 32768, column.reshape(-1), (7, 4))
+    for k in range(4):
+        whole, rest = divmod(3.5 + 0.375 * k, 1)
+        wanted[7 - k] += 0.5 * ((1 - rest) * strip[int(whole)] + rest * strip[int(whole) + 1])
+    np.testing.assert_allclose(column, wanted, atol=4)
+
+
+def test_texels_are_mixed_and_nothing_beside_them_is_written() -> None:
+    texels = np.random.default_rng(0).integers(0, 256, 200).astype(np.uint8)
+    strip = np.zeros(60, np.uint16)
+    mixed(texels, (3, 101), (10_000, 20_000), strip, 8)
+    wanted = 2 * 256 / 65536 * (10_000.0 * texels[3:35] + 20_000.0 * texels[101:133])
+    np.testing.assert_allclose(strip[8:40], wanted, atol=4)
+    assert not strip[:8].any()
+    assert not strip[40:].any()
+
+
+def test_a_share_of_a_colour() -> None:
+    column = np.zeros(12, np.uint16)
+    coloured((256 * 200, 256 * 100, 256 * 3), 16384, column, 1)
+    np.testing.assert_allclose(column.reshape(3, 4)[1], (12800, 6400, 192, 0), atol=1)
+    assert not column[[0, 1, 2, 3, 8, 9, 10, 11]].any()
