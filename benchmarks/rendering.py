@@ -46,8 +46,8 @@ def painting(camera: Camera, room: Arena = ROOM, batch: int = BATCH) -> Callable
     images = np.empty((batch, camera.height, camera.width, 3), np.uint8)
 
     def paint() -> int:
-        for batch in batches:
-            camera.render(room, batch, out=images[: len(batch)])
+        for where in batches:
+            camera.render(room, where, out=images[: len(where)])
         return VIEWS
 
     return paint
