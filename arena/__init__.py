@@ -55,5 +55,8 @@ with suppress(ImportError):
     import gymnasium
 
     gymnasium.register(
-        id="arena/Explorer-v0", entry_point="arena.environment:Explorer", max_episode_steps=2000
+        id="arena/Explorer-v0",
+        entry_point="arena.environment:Explorer",
+        vector_entry_point="arena.vector_environment:VectorExplorer",
+        max_episode_steps=2000,
     )

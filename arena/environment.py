@@ -132,12 +132,15 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode, at `options["pose"]` or anywhere in free space."""
         super().reset(seed=seed)
-        start = _start(options or {}) or random_start(self.arena, self.body, self.np_random)
-        self._drive = self.body.place(self.arena, start)
+        self._drive = self.body.place(self.arena, self.starting_pose(options or {}))
         self._sniffer = self.nose.sniffer(len(self.arena.sources), self.np_random)
         self._now[0] = 0.0
         self._trail: list[tuple[float, float]] = []
         return self._sense(self._drive, touched=False)
+
+    def starting_pose(self, options: Mapping[str, Any]) -> Pose:
+        """Read the options of `reset`, or draw a pose from free space."""
+        return _start(options) or random_start(self.arena, self.body, self.np_random)
 
     def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Obey for `dt` seconds, then look and smell."""

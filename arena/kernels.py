@@ -71,7 +71,7 @@ def kernels_cached_in(folder: Path | None) -> Callable[..., Callable[[Function],
     return kernel
 
 
-_folder = cache_folder(Path(__file__).parent, "eye", "smell", "rooms")
+_folder = cache_folder(Path(__file__).parent, "bodies", "eye", "smell", "rooms")
 kernel = kernels_cached_in(_folder)
 
 

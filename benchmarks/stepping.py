@@ -11,14 +11,17 @@ from benchmarks.timing import ROOM, Figures, missing, one_core, rate, versus
 STEPS = 400
 
 
+EXPLORERS = 1024
+
+
 def stepping() -> Figures:
-    """Step with a 92×15 strip and smell, in turn with `Agent.update`, both on the same core."""
+    """Step with a 92×15 strip and smell: one in turn with `Agent.update`, and many in turn with one."""
     with one_core():
         ours = explorer()
+        together: Figures = {"explorers_over_one": versus(explorers(), ours)}
         if importlib.util.find_spec("ratinabox") is None:
-            ours()
-            return {"per_s": rate(ours), **missing("ratinabox")}
-        return versus(ours, rat())
+            return {"per_s": rate(ours), **missing("ratinabox"), **together}
+        return {**versus(ours, rat()), **together}
 
 
 def explorer() -> Callable[[], int]:
@@ -34,6 +37,21 @@ def explorer() -> Callable[[], int]:
             *_, info = env.step(spin if spins else run)
             spins = 12 if info["touched"] else max(0, spins - 1)
         return STEPS
+
+    return walk
+
+
+def explorers() -> Callable[[], int]:
+    """Give work that steps with many explorers in one room."""
+    many = gymnasium.make_vec(
+        "arena/Explorer-v0", num_envs=EXPLORERS, vectorization_mode="vector_entry_point", arena=ROOM
+    )
+    many.reset(seed=0)
+    runs = np.random.default_rng(0).uniform((0.2, -0.5), (0.8, 0.5), (EXPLORERS, 2)).astype(np.float32)
+
+    def walk() -> int:
+        many.step(runs)
+        return EXPLORERS
 
     return walk
 

@@ -4,17 +4,16 @@ import math
 from typing import Annotated
 
 import numpy as np
-import pymunk
 from pydantic import Field
 
 from arena.angles import wrap_angle
+from arena.bodies.rolling import Limits, look_ahead, roll
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 
 TOLERANCE = 1e-3
-"""How far (m) a start may reach beyond free space; a step never reaches beyond it by more than `_CLOSE`."""
-_CLOSE = 1e-6
+"""How far (m) a start may reach beyond free space; a step never does by more than `rolling.CLOSE`."""
 
 Pose = tuple[float, float, float]
 """x and y in m, heading in rad."""
@@ -23,11 +22,10 @@ Pose = tuple[float, float, float]
 class Drive:
     """A body at large in an arena; `Disc.place` makes one.
 
-    Each step gives a pymunk disc the velocity of the wheels and lets pymunk move it and find what it hits. A
-    disc that overlaps a wall is pushed out along the shortest way, so it slides without friction; where that
-    fails, in a wedge or in a gap too narrow for it, it stays where it was. Steps are divided so that none is
-    longer than a fifth of the radius: no wall is thin enough to be passed, nor any gap that is narrower than
-    the body by 1 %.
+    Each step moves a disc at the velocity of the wheels. Where it overlaps a wall it is pushed out along the
+    shortest way, so it slides without friction; where that fails, in a wedge or in a gap too narrow for it,
+    it stays where it was. Steps are divided so that none is longer than a fifth of the radius: no wall is
+    thin enough to be passed, nor any gap that is narrower than the body by 1 %.
 
     Attributes
     ----------
@@ -45,22 +43,14 @@ class Drive:
 
     def __init__(self, body: "Disc", arena: Arena, pose: Pose) -> None:
         self.body = body
-        self._heading = pose[2]
-        self._space = arena.space()
-        self._disc = pymunk.Body(mass=1.0, moment=math.inf)
-        self._disc.position = pose[:2]
-        shape = pymunk.Circle(self._disc, body.radius)
-        # Queries with the disc's own filter leave it out.
-        self._others = shape.filter = pymunk.ShapeFilter(group=1)
-        self._space.add(self._disc, shape)
-        self._space.on_collision(pre_solve=self._on_collision)
-        self._overlaps = False
+        self._state = np.array([*pose, 0.0, 0.0, math.nan])
+        self._edges, self._limits = arena.edges, body.limits
+        self._x, self._y, self._heading = self._state[:3].tolist()
 
     @property
     def pose(self) -> Pose:
         """Where the body is, its heading in (−π, π]."""
-        x, y = self._disc.position
-        return x, y, wrap_angle(self._heading)
+        return self._x, self._y, wrap_angle(self._heading)
 
     def step(self, speed: float, turn: float, dt: float) -> bool:
         """Move for dt (s), approaching a speed (m/s) and a turn rate (rad/s) as the body can.
@@ -82,64 +72,15 @@ class Drive:
                 f"cannot step at speed {speed} m/s and turn {turn} rad/s for {dt} s; "
                 "give finite numbers and dt > 0"
             )
-        body, disc = self.body, self._disc
-        speed = max(-body.max_speed, min(body.max_speed, speed))
-        turn = max(-body.max_turn, min(body.max_turn, turn))
-        self.speed, speed = _approach(self.speed, speed, body.max_acceleration, dt)
-        self.turn, turn = _approach(self.turn, turn, body.max_turn_acceleration, dt)
-        parts = max(1, math.ceil(5 * abs(speed) * dt / body.radius))
-        dt /= parts
-        self.contact = None
-        for _ in range(parts):
-            # Half the turn first: second-order accurate along the arc.
-            course = self._heading + 0.5 * turn * dt
-            self._heading += turn * dt
-            vx, vy = disc.velocity = speed * math.cos(course), speed * math.sin(course)
-            self._space.step(dt)
-            if self._overlaps:
-                self._push_out(vx * dt, vy * dt)
+        roll(self._state, self._edges, self._limits, speed, turn, dt)
+        self._x, self._y, self._heading, self.speed, self.turn, away = self._state.tolist()
+        self.contact = None if math.isnan(away) else away
         return self.contact is not None
 
     def ahead(self, reach: float) -> float | None:
         """Look straight ahead from the centre: give the normal (rad) of what is within reach (m), or None."""
-        x, y = self._disc.position
-        goal = x + reach * math.cos(self._heading), y + reach * math.sin(self._heading)
-        wall = self._space.segment_query_first((x, y), goal, 0.0, self._others)
-        return None if wall is None else wall.normal.angle
-
-    def _on_collision(self, arbiter: pymunk.Arbiter, _space: pymunk.Space, _data: object) -> None:
-        # pymunk's own solver leaves centimetres of overlap and then works them off as speed.
-        arbiter.process_collision = False
-        self._overlaps = True
-
-    def _push_out(self, dx: float, dy: float) -> None:
-        self._overlaps = False
-        x0, y0 = x, y = self._disc.position
-        # A corner takes a few pushes; what twenty do not free is a wedge.
-        for _ in range(20):
-            wall = self._space.point_query_nearest((x, y), self.body.radius - _CLOSE, self._others)
-            if wall is None:
-                break
-            px, py = wall.point
-            stretch = self.body.radius / max(wall.distance, _CLOSE * self.body.radius)
-            x, y = px + stretch * (x - px), py + stretch * (y - py)
-        else:
-            x, y = x0 - dx, y0 - dy
-        if (x, y) != (x0, y0):
-            self._disc.position = x, y
-            self.contact = math.atan2(y - y0, x - x0)
-
-
-def _approach(now: float, goal: float, limit: float | None, dt: float) -> tuple[float, float]:
-    """Change by no more than limit a second towards the goal: give what is reached in dt, and the mean."""
-    if limit is None:
-        return goal, goal
-    change = goal - now
-    needed = abs(change) / limit
-    if needed < dt:
-        return goal, goal - 0.5 * change * needed / dt
-    end = now + math.copysign(limit * dt, change)
-    return end, 0.5 * (now + end)
+        normal = look_ahead(self._state, self._edges, reach)
+        return None if math.isnan(normal) else normal
 
 
 class Disc(Settings):
@@ -170,6 +111,12 @@ class Disc(Settings):
     max_acceleration: Annotated[float, Field(gt=0, le=1e6)] | None = None
     max_turn_acceleration: Annotated[float, Field(gt=0, le=1e6)] | None = None
     wheel_base: Annotated[float, Field(gt=0, le=1e3)] = 0.23
+
+    @property
+    def limits(self) -> Limits:
+        """What it can do at most, as the kernels want it."""
+        accelerations = (self.max_acceleration or math.inf, self.max_turn_acceleration or math.inf)
+        return self.radius, self.max_speed, self.max_turn, *accelerations
 
     def from_wheels(self, left: float, right: float) -> tuple[float, float]:
         """Turn the speeds of the wheels' rims (m/s) into the speed (m/s) and turn rate (rad/s) of the body.

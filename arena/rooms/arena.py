@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from collections.abc import Mapping
 from functools import cached_property
@@ -203,6 +204,16 @@ class Arena(FrozenModel):
         for a, b in edges:
             space.add(pymunk.Segment(space.static_body, a, b, 0.0))
         return space
+
+    @cached_property
+    def edges(self) -> Float[np.ndarray, "edges 2 2"]:
+        """Ends (m) of all that stops a body, in the order in which Chipmunk goes through its tree of them.
+
+        Where two are equally near, as a wall on the platform's border, the first decides the last digit.
+        """
+        everywhere = pymunk.BB(-math.inf, -math.inf, math.inf, math.inf)
+        found = self.space().bb_query(everywhere, pymunk.ShapeFilter())
+        return np.array([(edge.a, edge.b) for edge in found if isinstance(edge, pymunk.Segment)])
 
     @cached_property
     def surfaces(self) -> Surfaces:

@@ -2,10 +2,11 @@
 
 import math
 import typing
+from collections.abc import Sequence
 from typing import Annotated
 
 import numpy as np
-from jaxtyping import Float, Float32
+from jaxtyping import Float, Float32, Int
 from pydantic import Field
 
 from arena.errors import ArenaError
@@ -84,6 +85,33 @@ class Sniffer:
         return smelt
 
 
+class Sniffers:
+    """Noses of one kind at work side by side, each with a generator of its own."""
+
+    def __init__(self, nose: Nose, count: int, odorants: int) -> None:
+        self._constants = nose.noise, nose.fluctuation, nose.correlation_time
+        self._draws = 2 if nose.fluctuation else 1
+        self._gain, self._time = np.zeros((count, odorants)), np.full(count, -np.inf)
+
+    def begin(self, which: Int[np.ndarray, " noses"]) -> None:
+        """Forget what these have smelt."""
+        self._gain[which], self._time[which] = 0.0, -np.inf
+
+    def smell(
+        self,
+        which: Int[np.ndarray, " noses"],
+        concentrations: Float[np.ndarray, "noses odorants"],
+        times: Float[np.ndarray, " noses"],
+        rngs: Sequence[np.random.Generator],
+    ) -> Float32[np.ndarray, "noses odorants"]:
+        """Smell once with each of these, as its own `Sniffer` would, bit by bit; raises like it."""
+        shape = self._draws, self._gain.shape[1]
+        normals = np.array([rng.standard_normal(shape) for rng in rngs]).reshape(len(rngs), *shape)
+        state = self._time, self._gain
+        smelt: np.ndarray = _smell_all(which, concentrations, times, normals, self._constants, state)
+        return smelt
+
+
 @kernel()
 @typing.no_type_check
 def _smell(
@@ -119,4 +147,22 @@ def _smell(
             scent = concentrations[view, odorant] * math.exp(log_gain)
             # The smallest normal and the largest number of float32: its logarithm exists.
             smelt[view, odorant] = min(max(scent, 1.1754943508222875e-38), 3.4028234663852886e38)
+    return smelt
+
+
+@kernel()
+@typing.no_type_check
+def _smell_all(
+    which: np.ndarray,
+    concentrations: np.ndarray,
+    times: np.ndarray,
+    normals: np.ndarray,
+    constants: tuple[float, float, float],
+    states: tuple[np.ndarray, np.ndarray],
+) -> np.ndarray:
+    smelt = np.empty(concentrations.shape, np.float32)
+    for k in range(len(which)):
+        one, its = slice(k, k + 1), which[k]
+        state = states[0][its : its + 1], states[1][its]
+        smelt[k] = _smell(concentrations[one], times[one], normals[one], constants, state)[0]
     return smelt

@@ -18,11 +18,11 @@ from arena.kernels import kernels_cached_in
 from arena.rooms.arena import Arena
 
 PACKAGE = Path(arena.__file__).parent
-SOURCES = ["kernels.py", "eye/eye.py", "smell/smell.py", "rooms/deeper/rooms.py"]
+SOURCES = ["kernels.py", "bodies/bodies.py", "eye/eye.py", "smell/smell.py", "rooms/deeper/rooms.py"]
 
 
 def folder_of(package: Path) -> Path | None:
-    return kernels.cache_folder(package, "eye", "smell", "rooms")
+    return kernels.cache_folder(package, "bodies", "eye", "smell", "rooms")
 
 
 @pytest.fixture
@@ -113,7 +113,7 @@ def test_every_kernel_is_in_the_folder_and_its_source_in_the_hash() -> None:
         if isinstance(value, Dispatcher)
     }
     assert len(found) > 25
-    hashed = {file for part in ("eye", "smell", "rooms") for file in (PACKAGE / part).rglob("*.py")}
+    hashed = {file for part in ("bodies", "eye", "smell", "rooms") for file in (PACKAGE / part).rglob("*.py")}
     assert {Path(one.py_func.__code__.co_filename) for one in found} <= hashed
     assert all(str(kernels._folder) in str(one.stats.cache_path) for one in found)
 

@@ -1,0 +1,196 @@
+"""The vectorised environment: many animals in one room that pass through each other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
+
+from arena.angles import wrap_angle
+from arena.bodies.rolling import CONTACT, roll_all
+from arena.environment import Explorer, Observation
+from arena.errors import ArenaError
+from arena.rooms.arena import Arena
+from arena.smell.nose import Sniffers
+
+Truth = dict[str, Any]
+
+
+class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndarray]):
+    """As many `Explorer` in one room, each the same as alone with its seed, bit by bit.
+
+    `gymnasium.make_vec("arena/Explorer-v0", num_envs=1024, vectorization_mode="vector_entry_point",
+    arena="furnished")`. All bodies move, all noses smell and all eyes are painted in one call each.
+    Observations and `info` are those of gymnasium's own `SyncVectorEnv`, and so are seeds and autoreset.
+
+    Parameters
+    ----------
+    arena
+        As for `Explorer`.
+    num_envs
+        How many animals.
+    max_episode_steps
+        Steps after which an episode is truncated; None never does.
+    autoreset_mode
+        A gymnasium `AutoresetMode` or its value.
+    fields
+        What else an `Explorer` takes, but `render_mode`.
+
+    Raises
+    ------
+    ArenaError
+        As `Explorer` does, and for a count or length of an episode below one.
+    """
+
+    def __init__(
+        self,
+        arena: Arena | str | Path,
+        *,
+        num_envs: int = 1,
+        max_episode_steps: int | None = None,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        **fields: Any,
+    ) -> None:
+        if num_envs < 1 or (max_episode_steps is not None and max_episode_steps < 1):
+            raise ArenaError(
+                f"num_envs is {num_envs} and max_episode_steps is {max_episode_steps}; "
+                "give at least one of each"
+            )
+        if fields.get("render_mode") is not None:
+            raise ArenaError("many explorers draw no frames; leave render_mode out")
+        self.explorer = Explorer(arena, **fields)
+        self.num_envs = num_envs
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self.metadata = {**self.explorer.metadata, "autoreset_mode": self.autoreset_mode}
+        self.single_observation_space = self.explorer.observation_space
+        self.single_action_space = self.explorer.action_space
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._most = math.inf if max_episode_steps is None else max_episode_steps
+        self._states = np.full((num_envs, 6), math.nan)
+        self._steps = np.zeros(num_envs, int)
+        self._times = np.zeros(num_envs)
+        self._done = np.zeros(num_envs, bool)
+        self._rngs: list[np.random.Generator | None] = [None] * num_envs
+        self._sniffers = Sniffers(self.explorer.nose, num_envs, len(self.explorer.arena.sources))
+        self._sensed: Observation = {}
+
+    def reset(
+        self, *, seed: int | Sequence[int | None] | None = None, options: Mapping[str, Any] | None = None
+    ) -> tuple[Observation, Truth]:
+        """Begin episodes, in those where `options["reset_mask"]` is true, or in all; see `Explorer.reset`."""
+        options = dict(options or {})
+        which = np.flatnonzero(options.pop("reset_mask", np.ones(self.num_envs, bool)))
+        seeds = [seed + k for k in range(self.num_envs)] if isinstance(seed, int) else seed
+        seeds = [None] * self.num_envs if seeds is None else seeds
+        if len(seeds) != self.num_envs:
+            raise ArenaError(f"there are {len(seeds)} seeds for {self.num_envs} explorers; give one each")
+        self._begin(which, seeds, options)
+        return self._given(), self._truth(which)
+
+    def step(self, actions: np.ndarray) -> tuple[Observation, np.ndarray, np.ndarray, np.ndarray, Truth]:
+        """Obey for `dt` seconds, then look and smell; who has ended begins anew."""
+        one, actions = self.explorer, np.asarray(actions, float)
+        if not self._sensed:
+            raise ArenaError("the animals are nowhere yet; call reset() before the first step()")
+        if actions.shape != (self.num_envs, 2):
+            raise ArenaError(
+                f"the actions have shape {actions.shape}; give two numbers a row for {self.num_envs}"
+            )
+        again = self._done if self.autoreset_mode is AutoresetMode.NEXT_STEP else np.zeros_like(self._done)
+        if self.autoreset_mode is AutoresetMode.DISABLED and self._done.any():
+            raise ArenaError("some episodes have ended; reset them with options={'reset_mask': ended}")
+        going, renewed, before = np.flatnonzero(~again), np.flatnonzero(again), self._sensed
+        self._sensed = {name: values.copy() for name, values in before.items()}
+        self._move(going, actions)
+        rewards, truncated = np.zeros(self.num_envs), np.zeros(self.num_envs, bool)
+        after = self._sensed
+        for k in going.tolist():
+            was = {"view": before["view"][k], "odour": before["odour"][k]}
+            rewards[k] = one.reward(was, {"view": after["view"][k], "odour": after["odour"][k]})
+        truncated[going] = self._steps[going] >= self._most
+        if len(renewed):
+            self._begin(renewed, [None] * self.num_envs, {})
+        info = self._truth(np.arange(self.num_envs))
+        self._done = truncated.copy()
+        if self.autoreset_mode is AutoresetMode.SAME_STEP and truncated.any():
+            ended = np.flatnonzero(truncated)
+            last = np.full(self.num_envs, None)
+            for k in ended.tolist():
+                last[k] = {name: values[k].copy() for name, values in self._sensed.items()}
+            final = self._truth(ended)
+            self._begin(ended, [None] * self.num_envs, {})
+            info = self._truth(np.arange(self.num_envs))
+            info |= {"final_obs": last, "_final_obs": truncated.copy()}
+            info |= {"final_info": final, "_final_info": truncated.copy()}
+        return self._given(), rewards, np.zeros(self.num_envs, bool), truncated, info
+
+    def _begin(self, which: np.ndarray, seeds: Sequence[int | None], options: Mapping[str, Any]) -> None:
+        one = self.explorer
+        for k in which.tolist():
+            # The explorer lends itself: what it draws at a reset is what it would draw alone.
+            if seeds[k] is None and self._rngs[k] is not None:
+                one.np_random = self._rngs[k]
+                start = one.starting_pose(options)
+            else:
+                gymnasium.Env.reset(one, seed=seeds[k])
+                start = one.starting_pose(options)
+            self._rngs[k] = one.np_random
+            one.body.place(one.arena, start)
+            self._states[k] = (*start, 0.0, 0.0, math.nan)
+        self._steps[which], self._times[which], self._done[which] = 0, 0.0, False
+        self._sniffers.begin(which)
+        if not self._sensed:
+            spaces = self.observation_space.spaces  # type: ignore[attr-defined]
+            self._sensed = {name: np.zeros(space.shape, space.dtype) for name, space in spaces.items()}
+        self._sense(which)
+
+    def _move(self, which: np.ndarray, actions: np.ndarray) -> None:
+        one, body = self.explorer, self.explorer.body
+        commands = actions[which] * [body.max_speed, body.max_turn]
+        if one.control == "wheels":
+            wheels = (actions[which] * body.max_speed).tolist()
+            commands = np.array([body.from_wheels(left, right) for left, right in wheels]).reshape(-1, 2)
+        if not np.isfinite(commands).all():
+            raise ArenaError("some actions are not finite; give numbers between -1 and 1")
+        states = self._states[which]
+        roll_all(states, one.arena.edges, body.limits, commands, one.dt)
+        self._states[which] = states
+        self._steps[which] += 1
+        self._times[which] += one.dt
+        self._sense(which)
+
+    def _sense(self, which: np.ndarray) -> None:
+        """Look, and smell."""
+        one, poses = self.explorer, self._poses(which)
+        if getattr(one.camera, "noise", 1.0):
+            for k, pose in zip(which.tolist(), poses, strict=True):
+                rng: Any = self._rngs[k]
+                self._sensed["view"][k] = one.camera.render(one.arena, pose[None], rng=rng)[0]
+        elif len(which):
+            rng = self._rngs[0]
+            self._sensed["view"][which] = one.camera.render(one.arena, poses, rng=rng)
+        concentrations = one.arena.odours.concentration(poses[:, :2])
+        rngs: Any = [self._rngs[k] for k in which.tolist()]
+        self._sensed["odour"][which] = self._sniffers.smell(which, concentrations, self._times[which], rngs)
+
+    def _poses(self, which: np.ndarray) -> np.ndarray:
+        states = self._states[which]
+        return np.column_stack([states[:, :2], wrap_angle(states[:, 2])])
+
+    def _truth(self, which: np.ndarray) -> Truth:
+        there = np.zeros(self.num_envs, bool)
+        there[which] = True
+        poses, touched = np.zeros((self.num_envs, 3)), np.zeros(self.num_envs, bool)
+        poses[which] = self._poses(which)
+        touched[which] = np.isfinite(self._states[which, CONTACT])
+        return {"pose": poses, "_pose": there, "touched": touched, "_touched": there.copy()}
+
+    def _given(self) -> Observation:
+        return {name: values.copy() for name, values in self._sensed.items()}
