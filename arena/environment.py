@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 import cv2
 import gymnasium
 import numpy as np
-from jaxtyping import UInt8
+from jaxtyping import Float, UInt8
 from pydantic import Field
 
 from arena.bodies.disc import Disc, Drive, Pose
@@ -44,12 +44,22 @@ class OdourClimbed(Settings):
 
     def __call__(self, before: Observation, after: Observation) -> float:
         """Judge a step."""
+        return math.log(self._smelt(after).item()) - math.log(self._smelt(before).item())
+
+    def of_all(self, before: Observation, after: Observation) -> Float[np.ndarray, " explorers"]:
+        """Judge a step of many, each as alone, bit by bit."""
+        # numpy's own logarithm has another last digit.
+        up, down = (np.array([*map(math.log, self._smelt(sensed).tolist())]) for sensed in (after, before))
+        climbed: np.ndarray = up - down
+        return climbed
+
+    def _smelt(self, sensed: Observation) -> np.ndarray:
         try:
-            return math.log(after["odour"].item(self.odorant)) - math.log(before["odour"].item(self.odorant))
+            return np.asarray(sensed["odour"][..., self.odorant])
         except IndexError:
             raise ArenaError(
-                f"there is no odorant {self.odorant} to climb, the room has {len(after['odour'])} odour "
-                "sources; choose another one, another room or another reward"
+                f"there is no odorant {self.odorant} to climb, the room has {sensed['odour'].shape[-1]} "
+                "odour sources; choose another one, another room or another reward"
             ) from None
 
 

@@ -14,7 +14,7 @@ from gymnasium.vector.utils import batch_space
 
 from arena.angles import wrap_angle
 from arena.bodies.rolling import CONTACT, roll_all
-from arena.environment import Explorer, Observation
+from arena.environment import Explorer, Observation, OdourClimbed
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
 from arena.smell.nose import Sniffers
@@ -23,7 +23,7 @@ Truth = dict[str, Any]
 
 
 class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndarray]):
-    """As many `Explorer` in one room, each the same as alone with its seed, bit by bit.
+    """Many an `Explorer` in one room, each the same as alone with its seed, bit by bit.
 
     `gymnasium.make_vec("arena/Explorer-v0", num_envs=1024, vectorization_mode="vector_entry_point",
     arena="furnished")`. All bodies move, all noses smell and all eyes are painted in one call each.
@@ -77,7 +77,7 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         self._steps = np.zeros(num_envs, int)
         self._times = np.zeros(num_envs)
         self._done = np.zeros(num_envs, bool)
-        self._rngs: list[np.random.Generator | None] = [None] * num_envs
+        self._rngs: list[Any] = [None] * num_envs
         self._sniffers = Sniffers(self.explorer.nose, num_envs, len(self.explorer.arena.sources))
         self._sensed: Observation = {}
 
@@ -88,68 +88,60 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         options = dict(options or {})
         which = np.flatnonzero(options.pop("reset_mask", np.ones(self.num_envs, bool)))
         seeds = [seed + k for k in range(self.num_envs)] if isinstance(seed, int) else seed
-        seeds = [None] * self.num_envs if seeds is None else seeds
-        if len(seeds) != self.num_envs:
+        if seeds is not None and len(seeds) != self.num_envs:
             raise ArenaError(f"there are {len(seeds)} seeds for {self.num_envs} explorers; give one each")
-        self._begin(which, seeds, options)
-        return self._given(), self._truth(which)
+        self._begin(which, options, seeds)
+        if not self._sensed:
+            spaces = self.observation_space.spaces  # type: ignore[attr-defined]
+            self._sensed = {name: np.zeros(space.shape, space.dtype) for name, space in spaces.items()}
+        self._sense_again(which)
+        return self._sensed, self._truth(which)
 
     def step(self, actions: np.ndarray) -> tuple[Observation, np.ndarray, np.ndarray, np.ndarray, Truth]:
         """Obey for `dt` seconds, then look and smell; who has ended begins anew."""
-        one, actions = self.explorer, np.asarray(actions, float)
+        mode, actions, everyone = self.autoreset_mode, np.asarray(actions, float), np.arange(self.num_envs)
         if not self._sensed:
             raise ArenaError("the animals are nowhere yet; call reset() before the first step()")
         if actions.shape != (self.num_envs, 2):
             raise ArenaError(
                 f"the actions have shape {actions.shape}; give two numbers a row for {self.num_envs}"
             )
-        again = self._done if self.autoreset_mode is AutoresetMode.NEXT_STEP else np.zeros_like(self._done)
-        if self.autoreset_mode is AutoresetMode.DISABLED and self._done.any():
+        if mode is AutoresetMode.DISABLED and self._done.any():
             raise ArenaError("some episodes have ended; reset them with options={'reset_mask': ended}")
-        going, renewed, before = np.flatnonzero(~again), np.flatnonzero(again), self._sensed
-        self._sensed = {name: values.copy() for name, values in before.items()}
-        self._move(going, actions)
-        rewards, truncated = np.zeros(self.num_envs), np.zeros(self.num_envs, bool)
-        after = self._sensed
-        for k in going.tolist():
-            was = {"view": before["view"][k], "odour": before["odour"][k]}
-            rewards[k] = one.reward(was, {"view": after["view"][k], "odour": after["odour"][k]})
-        truncated[going] = self._steps[going] >= self._most
-        if len(renewed):
-            self._begin(renewed, [None] * self.num_envs, {})
-        info = self._truth(np.arange(self.num_envs))
+        again = self._done & (mode is AutoresetMode.NEXT_STEP)
+        self._move(np.flatnonzero(~again), actions)
+        self._begin(np.flatnonzero(again), {})
+        before, self._sensed = self._sensed, self._sense(everyone)
+        rewards = np.where(again, 0.0, self._judge(before, self._sensed))
+        truncated = self._steps >= self._most
         self._done = truncated.copy()
-        if self.autoreset_mode is AutoresetMode.SAME_STEP and truncated.any():
-            ended = np.flatnonzero(truncated)
-            last = np.full(self.num_envs, None)
+        info = self._truth(everyone)
+        if mode is AutoresetMode.SAME_STEP and truncated.any():
+            ended, last = np.flatnonzero(truncated), np.full(self.num_envs, None)
             for k in ended.tolist():
-                last[k] = {name: values[k].copy() for name, values in self._sensed.items()}
-            final = self._truth(ended)
-            self._begin(ended, [None] * self.num_envs, {})
-            info = self._truth(np.arange(self.num_envs))
-            info |= {"final_obs": last, "_final_obs": truncated.copy()}
-            info |= {"final_info": final, "_final_info": truncated.copy()}
-        return self._given(), rewards, np.zeros(self.num_envs, bool), truncated, info
+                last[k] = _row(self._sensed, k)
+            final = {"final_obs": last, "final_info": self._truth(ended)}
+            self._begin(ended, {})
+            self._sense_again(ended)
+            info = {**self._truth(everyone), **final, **{f"_{name}": truncated.copy() for name in final}}
+        return self._sensed, rewards, np.zeros(self.num_envs, bool), truncated, info
 
-    def _begin(self, which: np.ndarray, seeds: Sequence[int | None], options: Mapping[str, Any]) -> None:
+    def _begin(
+        self, which: np.ndarray, options: Mapping[str, Any], seeds: Sequence[int | None] | None = None
+    ) -> None:
         one = self.explorer
         for k in which.tolist():
+            seed = None if seeds is None else seeds[k]
             # The explorer lends itself: what it draws at a reset is what it would draw alone.
-            if seeds[k] is None and self._rngs[k] is not None:
+            if seed is None and self._rngs[k] is not None:
                 one.np_random = self._rngs[k]
-                start = one.starting_pose(options)
             else:
-                gymnasium.Env.reset(one, seed=seeds[k])
-                start = one.starting_pose(options)
-            self._rngs[k] = one.np_random
+                gymnasium.Env.reset(one, seed=seed)
+            self._rngs[k], start = one.np_random, one.starting_pose(options)
             one.body.place(one.arena, start)
             self._states[k] = (*start, 0.0, 0.0, math.nan)
         self._steps[which], self._times[which], self._done[which] = 0, 0.0, False
         self._sniffers.begin(which)
-        if not self._sensed:
-            spaces = self.observation_space.spaces  # type: ignore[attr-defined]
-            self._sensed = {name: np.zeros(space.shape, space.dtype) for name, space in spaces.items()}
-        self._sense(which)
 
     def _move(self, which: np.ndarray, actions: np.ndarray) -> None:
         one, body = self.explorer, self.explorer.body
@@ -164,21 +156,32 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         self._states[which] = states
         self._steps[which] += 1
         self._times[which] += one.dt
-        self._sense(which)
 
-    def _sense(self, which: np.ndarray) -> None:
+    def _sense(self, which: np.ndarray) -> Observation:
         """Look, and smell."""
         one, poses = self.explorer, self._poses(which)
-        if getattr(one.camera, "noise", 1.0):
-            for k, pose in zip(which.tolist(), poses, strict=True):
-                rng: Any = self._rngs[k]
-                self._sensed["view"][k] = one.camera.render(one.arena, pose[None], rng=rng)[0]
-        elif len(which):
-            rng = self._rngs[0]
-            self._sensed["view"][which] = one.camera.render(one.arena, poses, rng=rng)
+        rngs = [self._rngs[k] for k in which.tolist()]
+        # Without noise nothing is drawn, whosever generator it is.
+        if rngs and not getattr(one.camera, "noise", 1.0):
+            view = one.camera.render(one.arena, poses, rng=rngs[0])
+        else:
+            each = zip(poses[:, None], rngs, strict=True)
+            seen = [one.camera.render(one.arena, pose, rng=rng)[0] for pose, rng in each]
+            view = np.array(seen, np.uint8).reshape(len(seen), one.camera.height, one.camera.width, 3)
         concentrations = one.arena.odours.concentration(poses[:, :2])
-        rngs: Any = [self._rngs[k] for k in which.tolist()]
-        self._sensed["odour"][which] = self._sniffers.smell(which, concentrations, self._times[which], rngs)
+        return {"view": view, "odour": self._sniffers.smell(which, concentrations, self._times[which], rngs)}
+
+    def _sense_again(self, which: np.ndarray) -> None:
+        """Let some sense anew; what was given of the others is left as it is."""
+        fresh, self._sensed = self._sense(which), {key: old.copy() for key, old in self._sensed.items()}
+        for name, values in fresh.items():
+            self._sensed[name][which] = values
+
+    def _judge(self, before: Observation, after: Observation) -> np.ndarray:
+        reward = self.explorer.reward
+        if isinstance(reward, OdourClimbed):
+            return reward.of_all(before, after)
+        return np.array([reward(_row(before, k), _row(after, k)) for k in range(self.num_envs)])
 
     def _poses(self, which: np.ndarray) -> np.ndarray:
         states = self._states[which]
@@ -192,5 +195,6 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         touched[which] = np.isfinite(self._states[which, CONTACT])
         return {"pose": poses, "_pose": there, "touched": touched, "_touched": there.copy()}
 
-    def _given(self) -> Observation:
-        return {name: values.copy() for name, values in self._sensed.items()}
+
+def _row(sensed: Observation, k: int) -> Observation:
+    return {name: values[k].copy() for name, values in sensed.items()}
