@@ -1,22 +1,27 @@
 """Explore: a body walks through a room, looks and smells."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from threading import Event
 from typing import Any, Protocol, runtime_checkable
 
+import numba
 import numpy as np
-from jaxtyping import Float, UInt8
 from tqdm import tqdm
 
 from arena.bodies.disc import Disc
 from arena.errors import ArenaError
-from arena.motions.base import Motion
+from arena.eye.camera import Camera, Images, Poses
+from arena.motions.base import Motion, Striding, Walk, join
 from arena.recordings import storage
 from arena.recordings.origin import origin, unlike
 from arena.recordings.recording import Recording
-from arena.recordings.sharding import shards, write_shards
+from arena.recordings.sharding import shards, write_shard
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
 
@@ -33,9 +38,7 @@ class Eye(Protocol):
     def width(self) -> int:
         """Columns of an image."""
 
-    def render(
-        self, arena: Arena, poses: Float[np.ndarray, "views 3"], *, rng: np.random.Generator
-    ) -> UInt8[np.ndarray, "views height width 3"]:
+    def render(self, arena: Arena, poses: Poses, *, rng: np.random.Generator) -> Images:
         """Paint the views from poses, with what sensor noise there is from the generator."""
 
     def model_dump(self) -> dict[str, Any]:
@@ -91,28 +94,29 @@ def explore(
     if path is not None and begun is not None and not begun.missing:
         return Recording.open(path)
     walk_rng, nose_rng = (np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(2))
-    walk = motion.walk(arena, body, views, walk_rng)
+    crew = _Crew(arena, camera, seed, progress)
+    if path is not None or views is None or not isinstance(motion, Striding):
+        walk = motion.walk(arena, body, views, walk_rng)
+        strides, views = iter([walk]), len(walk.times)
+    else:
+        strides = motion.strides(arena, body, views, walk_rng)
+    if path is None:
+        walk, images = crew.see(strides, views)
     columns: dict[str, Any] = {
         "times": walk.times,
         "odours": nose.smell(arena.odours.concentration(walk.poses[:, :2]), walk.times, nose_rng),
         "poses": walk.poses,
     }
     attributes |= {"walk": dict(walk.notes), "origin": origin()}
-    shape = (len(walk.times), camera.height, camera.width, 3)
-    look = partial(_look, arena, camera, walk.poses, seed=seed, progress=progress)
     if path is None:
-        images = np.empty(shape, np.uint8)
-        for rows, seen in look(shards(len(images))):
-            images[rows] = seen
         return Recording(views=images, **columns, attributes=attributes)
-    missing = shards(len(walk.times)) if begun is None else begun.missing
     if begun is None:
-        with storage.new_folder(path, shape, columns, attributes):
-            pass  # It has its name from here on, and the views follow: a kill loses one shard at most.
+        with storage.new_folder(path, (views, camera.height, camera.width, 3), columns, attributes):
+            pass  # It has its name from here on, and the views follow: a kill loses what is being made.
     else:
         _check_columns(path, begun, columns)
     try:
-        write_shards(path / "views", look(missing))
+        crew.record(walk.poses, path / "views", shards(views) if begun is None else begun.missing)
     except OSError as error:
         raise ArenaError(
             f"cannot write {path}: {error.strerror or error}; what is written is kept, and the same command "
@@ -146,19 +150,61 @@ def _check_columns(path: Path, begun: storage.Stored, wanted: dict[str, np.ndarr
         )
 
 
-def _look(
-    arena: Arena,
-    camera: Eye,
-    poses: Float[np.ndarray, "views 3"],
-    missing: list[slice],
-    *,
-    seed: int,
-    progress: bool,
-) -> Iterator[tuple[slice, UInt8[np.ndarray, "shard height width 3"]]]:
-    """Paint the missing views; each shard has noise of its own, so that it can be made again alone."""
-    with tqdm(total=len(poses), unit="view", disable=not progress) as bar:
-        bar.update(len(poses) - sum(rows.stop - rows.start for rows in missing))
-        for rows in missing:
-            rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(2, rows.start)))
-            yield rows, camera.render(arena, poses[rows], rng=rng)
-            bar.update(rows.stop - rows.start)
+@dataclass(frozen=True)
+class _Crew:
+    """Those who paint: threads of which each takes a shard. A shard has noise of its own, and comes alone."""
+
+    arena: Arena
+    camera: Eye
+    seed: int
+    progress: bool
+
+    def see(self, strides: Iterable[Walk], views: int) -> tuple[Walk, Images]:
+        """Paint what is seen on a walk while it goes on."""
+        images = np.empty((views, self.camera.height, self.camera.width, 3), np.uint8)
+        poses, waiting, taken, there = np.empty((views, 3)), shards(views), list[Walk](), 0
+        with self._at_work(poses, images.__setitem__) as give:
+            for stride in strides:
+                taken.append(stride)
+                poses[there : there + len(stride.poses)] = stride.poses
+                there += len(stride.poses)
+                while waiting and waiting[0].stop <= there:
+                    give(waiting.pop(0))
+        return join(taken), images
+
+    def record(self, poses: Poses, folder: Path, missing: list[slice]) -> None:
+        """Paint what is missing of an array on disk."""
+        with self._at_work(poses, partial(write_shard, folder)) as give:
+            for rows in missing:
+                give(rows)
+
+    @contextmanager
+    def _at_work(
+        self, poses: Poses, keep: Callable[[slice, Images], object]
+    ) -> Iterator[Callable[[slice], object]]:
+        given, failed = list[tuple[int, Future[None]]](), Event()
+
+        def paint(rows: slice) -> None:
+            if failed.is_set():
+                return
+            rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(2, rows.start)))
+            try:
+                keep(rows, self.camera.render(self.arena, poses[rows], rng=rng))
+            except BaseException:
+                failed.set()
+                raise
+
+        # Of other eyes nobody knows whether they can look from several threads at once.
+        threads = numba.get_num_threads() if isinstance(self.camera, Camera) else 1
+        # One thread of numba to each, as its own are for one caller at a time.
+        pool = ThreadPoolExecutor(threads, initializer=numba.set_num_threads, initargs=(1,))
+        try:
+            yield lambda rows: given.append((rows.stop - rows.start, pool.submit(paint, rows)))
+            with tqdm(total=len(poses), unit="view", disable=not self.progress) as bar:
+                bar.update(len(poses) - sum(count for count, _ in given))
+                for count, future in given:
+                    future.result()
+                    bar.update(count)
+        finally:
+            failed.set()
+            pool.shutdown(cancel_futures=True)

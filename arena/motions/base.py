@@ -1,6 +1,6 @@
 """The contract of a motion: it steers a body through an arena and says when it looks."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -19,6 +19,12 @@ class Walk(NamedTuple):
     """x, y in m and heading in rad, in (−π, π]."""
     notes: Mapping[str, object] = {}
     """What else there is to know about this walk, as far as JSON can say; `explore` keeps it."""
+
+
+def join(strides: Iterable[Walk]) -> Walk:
+    """Put the parts of a walk together; the last has the notes."""
+    times, poses, notes = zip(*strides, strict=True)
+    return Walk(np.concatenate(times), np.concatenate(poses), notes[-1])
 
 
 @runtime_checkable
@@ -45,3 +51,17 @@ class Motion(Protocol):
 
     def model_dump(self) -> dict[str, object]:
         """Give the parameters."""
+
+
+class Striding:
+    """A motion that gives its views while it goes on: `explore` paints them meanwhile."""
+
+    def strides(
+        self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator
+    ) -> Iterator[Walk]:
+        """Move, some views at a time, until this many are taken; raises as `walk` does."""
+        raise NotImplementedError
+
+    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
+        """Move until this many views are taken."""
+        return join(self.strides(arena, body, views, rng))

@@ -8,13 +8,13 @@ import numpy as np
 
 from arena.angles import signed_turn
 from arena.bodies.disc import Disc, Drive, Pose
-from arena.motions.base import Walk
+from arena.motions.base import Striding, Walk
 from arena.motions.locomotion import STEP, StepLength, random_start, sample_views, turn_by
 from arena.rooms.arena import Arena
 from arena.settings import Positive, Settings, Share, Spread
 
 
-class Brownian(Settings):
+class Brownian(Striding, Settings):
     r"""Runs of exponential length with a wandering heading, and spins on the spot between them.
 
     Within a run the turn rate is an Ornstein-Uhlenbeck process. A run also ends where the body touches
@@ -78,7 +78,9 @@ class Brownian(Settings):
     view_every_rad: Positive = 0.35
     start: Pose | None = None
 
-    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
+    def strides(
+        self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator
+    ) -> Iterator[Walk]:
         """Wander until this many views are taken, the first at the start.
 
         Raises

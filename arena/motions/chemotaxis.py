@@ -10,7 +10,7 @@ from pydantic import Field
 from arena.angles import signed_turn
 from arena.bodies.disc import Disc, Drive, Pose
 from arena.errors import ArenaError
-from arena.motions.base import Walk
+from arena.motions.base import Walk, join
 from arena.motions.locomotion import STEP, StepLength, random_start, sample_views, turn_by
 from arena.rooms.arena import Arena
 from arena.settings import Positive, Settings
@@ -87,7 +87,7 @@ class Chemotaxis(Settings):
         drive = body.place(arena, self.start or random_start(arena, body, rng))
         stays: list[tuple[float, int, int]] = []
         steps = _counted(self._legs(drive, arena.odours, rng), stays)
-        walk = sample_views(self, drive, steps, views or self.default_views)
+        walk = join(sample_views(self, drive, steps, views or self.default_views))
         strength, first, last = np.reshape(stays, (-1, 3)).T
         counts = np.rint(walk.times / STEP)
         spans = np.stack([np.searchsorted(counts, first), np.searchsorted(counts, last, "right")], axis=1)

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from arena.bodies.disc import Disc, Drive
-from arena.motions.base import Walk
+from arena.motions.base import Striding, Walk
 from arena.motions.corridor import corridor
 from arena.motions.locomotion import Point, StepLength, bearing, go_to, sample_views, turn_by
 from arena.rooms.arena import Arena
@@ -18,7 +18,7 @@ FACING = 0.6
 """How much more than a full spin it takes to face the next corner, on average, rad."""
 
 
-class Cyclic(Settings):
+class Cyclic(Striding, Settings):
     """Zigzags along a straight way with a full spin at every corner, to the end and back.
 
     The corners are spread so that `passes` of the way take about all views. Each is at random in its own
@@ -56,7 +56,9 @@ class Cyclic(Settings):
     view_every_m: Positive = 0.12
     view_every_rad: Positive = 0.175
 
-    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
+    def strides(
+        self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator
+    ) -> Iterator[Walk]:
         """Go to and fro until this many views are taken, the first at the first end.
 
         Raises

@@ -18,6 +18,9 @@ STEP = 0.05
 STEER = 2.0
 """Turn rate per error of heading, 1/s: so slow that a body that misses its goal passes it, not orbits it."""
 
+STRIDE = 256
+"""Views that are given at a time."""
+
 Point = tuple[float, float]
 """x and y in m."""
 
@@ -33,7 +36,7 @@ class LooksOften(Protocol):
     view_every_rad: float
 
 
-def sample_views(motion: LooksOften, drive: Drive, steps: Iterator[StepLength], views: int) -> Walk:
+def sample_views(motion: LooksOften, drive: Drive, steps: Iterator[StepLength], views: int) -> Iterator[Walk]:
     """Take a view at the start and after every `view_every_m` or `view_every_rad`, whichever comes first.
 
     Parameters
@@ -45,20 +48,23 @@ def sample_views(motion: LooksOften, drive: Drive, steps: Iterator[StepLength], 
     steps
         Makes the drive step by `STEP`, for ever, and tells how far.
     views
-        How many to take.
+        How many to take; they are given `STRIDE` at a time.
     """
-    times, poses = np.zeros(views), np.empty((views, 3))
-    poses[0] = drive.pose
-    seen, gone, turned = 1, 0.0, 0.0
+    times, poses, left = [0.0], [drive.pose], views
+    gone = turned = 0.0
     for now, (way, turn) in enumerate(steps, start=1):
-        if seen == views:
+        if len(times) == min(STRIDE, left):
+            yield Walk(np.array(times), np.array(poses))
+            left -= len(times)
+            times, poses = [], []
+        if not left:
             break
         gone += way
         turned += turn
         if gone >= motion.view_every_m or turned >= motion.view_every_rad:
-            times[seen], poses[seen] = now * STEP, drive.pose
-            seen, gone, turned = seen + 1, 0.0, 0.0
-    return Walk(times, poses)
+            times.append(now * STEP)
+            poses.append(drive.pose)
+            gone = turned = 0.0
 
 
 def turn_by(drive: Drive, angle: float, turn_rate: float) -> Iterator[StepLength]:

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from arena.bodies.disc import Disc, Drive
-from arena.motions.base import Walk
+from arena.motions.base import Striding, Walk
 from arena.motions.corridor import corridor
 from arena.motions.locomotion import Point, StepLength, bearing, go_to, sample_views, turn_by
 from arena.rooms.arena import Arena
@@ -17,7 +17,7 @@ ROOM = 0.02
 """Kept from walls along the way, where there is as much, m."""
 
 
-class Track(Settings):
+class Track(Striding, Settings):
     """Runs straight from one end to the other and back, with a turn to either side at random at each end.
 
     The speed varies from run to run, and where it ends by `view_every_m`, so that no two runs see the same.
@@ -48,7 +48,9 @@ class Track(Settings):
     view_every_m: Positive = 0.12
     view_every_rad: Positive = 0.35
 
-    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
+    def strides(
+        self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator
+    ) -> Iterator[Walk]:
         """Go to and fro until this many views are taken, the first at the first end.
 
         Raises

@@ -70,9 +70,14 @@ def write_shards(
         for rows, images in views:
             if last is not None:
                 last.result()
-            last = worker.submit(_write, file(folder, rows), images)
+            last = worker.submit(write_shard, folder, rows, images)
         if last is not None:
             last.result()
+
+
+def write_shard(folder: Path, rows: slice, images: UInt8[np.ndarray, "shard height width 3"]) -> None:
+    """Write one shard; see `write_shards`, and call it from any thread but the main one."""
+    _write(file(folder, rows), images)
 
 
 def _write(path: Path, images: np.ndarray) -> None:
