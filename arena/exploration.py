@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from threading import Event
 from typing import Any, Protocol, runtime_checkable
@@ -163,7 +162,14 @@ class _Crew:
         """Paint what is seen on a walk while it goes on."""
         images = np.empty((views, self.camera.height, self.camera.width, 3), np.uint8)
         poses, waiting, taken, there = np.empty((views, 3)), shards(views), list[Walk](), 0
-        with self._at_work(poses, images.__setitem__) as give:
+
+        def paint(rows: slice, rng: np.random.Generator) -> None:
+            if isinstance(self.camera, Camera):
+                self.camera.render(self.arena, poses[rows], out=images[rows], rng=rng)
+            else:
+                images[rows] = self.camera.render(self.arena, poses[rows], rng=rng)
+
+        with self._at_work(paint, views) as give:
             for stride in strides:
                 taken.append(stride)
                 poses[there : there + len(stride.poses)] = stride.poses
@@ -174,22 +180,26 @@ class _Crew:
 
     def record(self, poses: Poses, folder: Path, missing: list[slice]) -> None:
         """Paint what is missing of an array on disk."""
-        with self._at_work(poses, partial(write_shard, folder)) as give:
+
+        def paint(rows: slice, rng: np.random.Generator) -> None:
+            write_shard(folder, rows, self.camera.render(self.arena, poses[rows], rng=rng))
+
+        with self._at_work(paint, len(poses)) as give:
             for rows in missing:
                 give(rows)
 
     @contextmanager
     def _at_work(
-        self, poses: Poses, keep: Callable[[slice, Images], object]
+        self, paint: Callable[[slice, np.random.Generator], None], views: int
     ) -> Iterator[Callable[[slice], object]]:
         given, failed = list[tuple[int, Future[None]]](), Event()
 
-        def paint(rows: slice) -> None:
+        def work(rows: slice) -> None:
             if failed.is_set():
                 return
             rng = np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(2, rows.start)))
             try:
-                keep(rows, self.camera.render(self.arena, poses[rows], rng=rng))
+                paint(rows, rng)
             except BaseException:
                 failed.set()
                 raise
@@ -199,9 +209,9 @@ class _Crew:
         # One thread of numba to each, as its own are for one caller at a time.
         pool = ThreadPoolExecutor(threads, initializer=numba.set_num_threads, initargs=(1,))
         try:
-            yield lambda rows: given.append((rows.stop - rows.start, pool.submit(paint, rows)))
-            with tqdm(total=len(poses), unit="view", disable=not self.progress) as bar:
-                bar.update(len(poses) - sum(count for count, _ in given))
+            yield lambda rows: given.append((rows.stop - rows.start, pool.submit(work, rows)))
+            with tqdm(total=views, unit="view", disable=not self.progress) as bar:
+                bar.update(views - sum(count for count, _ in given))
                 for count, future in given:
                     future.result()
                     bar.update(count)

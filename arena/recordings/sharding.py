@@ -83,13 +83,16 @@ def write_shard(folder: Path, rows: slice, images: UInt8[np.ndarray, "shard heig
 def _write(path: Path, images: np.ndarray) -> None:
     described = codecs()[0]
     blosc = Blosc(described.cname.value, described.clevel, Blosc.NOSHUFFLE)
-    frames: list[bytes] = [blosc.encode(image) for image in np.ascontiguousarray(images)]
-    frames = [frame + _checksum(frame) for frame in frames]
-    # Offset and size of every image that a shard has room for; all ones where none is.
-    index, sizes = np.full((SHARD, 2), 2**64 - 1, "<u8"), np.array([len(frame) for frame in frames], "<u8")
-    index[: len(sizes)] = np.stack([np.cumsum(sizes) - sizes, sizes], axis=1)
-    with atomic_write(path) as fresh, fresh.open("wb") as stream:
-        stream.writelines([*frames, index.tobytes(), _checksum(index.tobytes())])
+    sizes = np.empty(len(images), "<u8")
+    # Frames go out by the megabyte: a call of the system for each would take as long as its checksum.
+    with atomic_write(path) as fresh, fresh.open("wb", buffering=2**20) as stream:
+        for number, image in enumerate(np.ascontiguousarray(images)):
+            frame: bytes = blosc.encode(image)
+            sizes[number] = stream.write(frame) + stream.write(_checksum(frame))
+        # Offset and size of every image that a shard has room for; all ones where none is.
+        index = np.full((SHARD, 2), 2**64 - 1, "<u8")
+        index[: len(sizes)] = np.stack([np.cumsum(sizes) - sizes, sizes], axis=1)
+        stream.writelines([index.tobytes(), _checksum(index.tobytes())])
 
 
 def _checksum(content: bytes) -> bytes:
