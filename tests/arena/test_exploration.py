@@ -5,11 +5,15 @@ import socket
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 import tracemalloc
+from collections.abc import Iterator
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
+import numba
 import numpy as np
 import pytest
 import zarr
@@ -17,6 +21,8 @@ import zarr
 from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.exploration import explore
+from arena.eye.camera import Camera
+from arena.motions.base import Walk
 from arena.motions.brownian import Brownian
 from arena.motions.chemotaxis import Chemotaxis
 from arena.motions.replay import Replay
@@ -56,7 +62,7 @@ class Toy:
         return (bits[:, None, None, None] * (pixels + np.uint64(1)) >> np.uint64(20)).astype(np.uint8)
 
 
-def go(camera: Toy | None = None, **fields: object) -> Recording:
+def go(camera: Toy | Camera | None = None, **fields: object) -> Recording:
     return explore(Arena.load("open_field"), Brownian(), camera or Toy(), **{"views": VIEWS, **fields})
 
 
@@ -346,6 +352,74 @@ def test_in_memory_the_images_are_held_once() -> None:
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < rec.views.nbytes + 2.5 * 256 * 30_000
+
+
+def test_on_disk_no_more_than_a_shard_is_held(tmp_path: Path) -> None:
+    class Large(Toy):
+        height, width = 100, 100
+
+        def render(self, arena: Arena, poses: np.ndarray, *, rng: np.random.Generator) -> np.ndarray:
+            assert isinstance(arena, Arena)
+            return rng.integers(0, 256, (len(poses), 100, 100, 3), np.uint8)
+
+    go(views=10, out=tmp_path / "small.zarr")
+    tracemalloc.start()
+    go(Large(), views=2000, out=tmp_path / "rec.zarr")
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2.5 * 256 * 30_000
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.1])
+def test_threads_change_nothing(tmp_path: Path, noise: float) -> None:
+    camera, before = Camera.panoramic(16, 4, noise=noise), numba.get_num_threads()
+    try:
+        for threads in (1, min(2, before)):
+            numba.set_num_threads(threads)
+            go(camera, out=tmp_path / f"{threads}.zarr")
+            assert_equal(go(camera), Recording.open(tmp_path / f"{threads}.zarr"))
+    finally:
+        numba.set_num_threads(before)
+    one, *other = (list(snapshot(folder).values()) for folder in sorted(tmp_path.iterdir()))
+    assert other in ([], [one])
+    rec = go(camera)
+    rng = np.random.default_rng(np.random.SeedSequence(0, spawn_key=(2, 256)))
+    alone = camera.render(Arena.load("open_field"), rec.poses[256:512], rng=rng)
+    np.testing.assert_array_equal(rec.views[256:512], alone)
+
+
+def test_views_are_painted_while_the_body_walks_on() -> None:
+    painted = threading.Event()
+
+    class Watched(Toy):
+        def render(self, arena: Arena, poses: np.ndarray, *, rng: np.random.Generator) -> np.ndarray:
+            painted.set()
+            return super().render(arena, poses, rng=rng)
+
+    class Patient(Brownian):
+        def strides(self, *told: Any) -> Iterator[Walk]:
+            for stride in super().strides(*told):
+                yield stride
+                assert painted.wait(60)
+
+    np.testing.assert_array_equal(
+        explore(Arena.load("open_field"), Patient(), Watched(), views=VIEWS).views, go().views
+    )
+
+
+def test_after_a_failure_nothing_more_is_painted(tmp_path: Path) -> None:
+    class Failing(Toy):
+        def render(self, arena: Arena, poses: np.ndarray, *, rng: np.random.Generator) -> np.ndarray:
+            if len(self.calls) == 1:
+                self.calls.append(0)
+                raise ArenaError("blind")
+            return super().render(arena, poses, rng=rng)
+
+    for out in (None, tmp_path / "rec.zarr"):
+        camera = Failing()
+        with pytest.raises(ArenaError, match="blind"):
+            go(camera, out=out)
+        assert camera.calls == [256, 0]
 
 
 def test_progress_is_shown_on_stderr_only(capsys: pytest.CaptureFixture[str]) -> None:

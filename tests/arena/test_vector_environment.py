@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
+from arena.environment import Observation
 from arena.errors import ArenaError
 from arena.eye.camera import Camera
 from arena.smell.nose import Nose
@@ -38,10 +39,18 @@ def same(found: Any, wanted: Any) -> None:
         assert getattr(found, "dtype", None) == getattr(wanted, "dtype", None)
 
 
+def brightening(before: Observation, after: Observation) -> float:
+    return after["view"].mean() - before["view"].mean() + after["odour"].item(1)
+
+
 @pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])
 @pytest.mark.parametrize(
     "fields",
-    [{"nose": Nose(fluctuation=0.3)}, {"control": "wheels"}, {"camera": Camera.panoramic(16, 4, noise=0.1)}],
+    [
+        {"nose": Nose(fluctuation=0.3)},
+        {"control": "wheels", "reward": brightening},
+        {"camera": Camera.panoramic(16, 4, noise=0.1)},
+    ],
 )
 def test_each_is_as_alone_bit_by_bit(mode: AutoresetMode, fields: dict[str, Any]) -> None:
     ours, alone = both(mode, **fields)
