@@ -9,8 +9,6 @@ import numpy as np
 from benchmarks.timing import ROOM, Figures, missing, one_core, rate, versus
 
 STEPS = 400
-
-
 EXPLORERS = 1024
 
 
@@ -28,8 +26,7 @@ def explorer() -> Callable[[], int]:
     """Give work that steps through gymnasium's own wrappers, unchecked: runs, and spins at walls."""
     env = gymnasium.make("arena/Explorer-v0", arena=ROOM, max_episode_steps=10**9, disable_env_checker=True)
     env.reset(seed=0)
-    runs = np.random.default_rng(0).uniform((0.2, -0.5), (0.8, 0.5), (STEPS, 2)).astype(np.float32)
-    spin = np.array([0.0, 1.0], np.float32)
+    runs, spin = _runs(STEPS), np.array([0.0, 1.0], np.float32)
 
     def walk() -> int:
         spins = 0
@@ -42,18 +39,24 @@ def explorer() -> Callable[[], int]:
 
 
 def explorers() -> Callable[[], int]:
-    """Give work that steps with many explorers in one room."""
-    many = gymnasium.make_vec(
+    """Give work that steps once with many explorers in one room, who do the same."""
+    env = gymnasium.make_vec(
         "arena/Explorer-v0", num_envs=EXPLORERS, vectorization_mode="vector_entry_point", arena=ROOM
     )
-    many.reset(seed=0)
-    runs = np.random.default_rng(0).uniform((0.2, -0.5), (0.8, 0.5), (EXPLORERS, 2)).astype(np.float32)
+    env.reset(seed=0)
+    runs, spin, spins = _runs(EXPLORERS), np.array([0.0, 1.0], np.float32), np.zeros(EXPLORERS, int)
 
     def walk() -> int:
-        many.step(runs)
+        *_, info = env.step(np.where(spins[:, None] > 0, spin, runs))
+        spins[:] = np.where(info["touched"], 12, np.maximum(0, spins - 1))
         return EXPLORERS
 
     return walk
+
+
+def _runs(count: int) -> np.ndarray:
+    rng = np.random.default_rng(0)
+    return rng.uniform((0.2, -0.5), (0.8, 0.5), (count, 2)).astype(np.float32)
 
 
 def rat() -> Callable[[], int]:
