@@ -58,6 +58,9 @@ def explore(
 ) -> Recording:
     """Walk through the room, and record what is seen and smelt on the way.
 
+    As many threads as numba may use paint what a `Camera` sees, in memory while the body walks on, if its
+    motion is `Striding`. Their number changes nothing.
+
     Parameters
     ----------
     arena, motion, camera, nose, body

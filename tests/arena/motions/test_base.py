@@ -18,6 +18,7 @@ from arena import (
     Track,
     gallery,
 )
+from arena.motions.base import Striding
 
 MOTIONS = [Brownian(), Rotation(), Cyclic(), Chemotaxis(), Track()]
 SLOW = Disc(max_acceleration=1.0, max_turn_acceleration=2.0)
@@ -44,6 +45,24 @@ def test_same_seed_same_arrays(motion: Motion) -> None:
     np.testing.assert_array_equal(first.poses, again.poses)
     assert first.notes == again.notes
     assert not np.array_equal(first.poses, other.poses)
+
+
+@pytest.mark.parametrize("body", [Disc(), SLOW], ids=["at once", "slow"])
+@pytest.mark.parametrize("motion", [Brownian(), Track(), Cyclic()], ids=name)
+def test_strides_are_short_and_go_on_where_the_last_ended(motion: Striding, body: Disc) -> None:
+    arena = Arena.load("pillar")
+    strides = list(motion.strides(arena, body, 600, np.random.default_rng(0)))
+    assert [len(stride.times) for stride in strides] == [256, 256, 88]
+    walk = motion.walk(arena, body, 600, np.random.default_rng(0))
+    np.testing.assert_array_equal(np.concatenate([stride.poses for stride in strides]), walk.poses)
+    # As in one go: the way between two views is no other where a stride ends.
+    lapse = np.diff(walk.times)
+    assert lapse[[255, 511]].min() > 0
+    assert lapse[[255, 511]].max() <= np.delete(lapse, [255, 511]).max()
+    if isinstance(motion, Brownian | Track):
+        shorter = motion.walk(arena, body, 300, np.random.default_rng(0))
+        np.testing.assert_array_equal(shorter.poses, walk.poses[:300])
+        np.testing.assert_array_equal(shorter.times, walk.times[:300])
 
 
 @pytest.mark.parametrize("body", [Disc(radius=0.12), SLOW], ids=["at once", "slow"])
