@@ -5,10 +5,8 @@ import warnings
 
 import cyclopts
 
-from arena import ArenaError
 from cogmap.commands import app
 from cogmap.errors import CogmapError
-from neurons.errors import NeuronsError
 
 
 def main() -> None:
@@ -16,12 +14,22 @@ def main() -> None:
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _say
+            if not set(sys.argv[1:2]) - set(app.help_flags):
+                list(app.subapps)  # the help of all is read out of each
             app(sys.argv[1:], exit_on_error=False, print_error=False)
-    except (ArenaError, NeuronsError, CogmapError, cyclopts.CycloptsError) as error:
+    except _refusals() as error:
         _say(" ".join(str(error).split()))
         raise SystemExit(2) from None
     except KeyboardInterrupt:
         raise SystemExit(130) from None
+
+
+def _refusals() -> tuple[type[Exception], ...]:
+    """Give what bad input raises; asked for when something is raised, so that no command waits for torch."""
+    from arena.errors import ArenaError  # noqa: PLC0415
+    from neurons.errors import NeuronsError  # noqa: PLC0415
+
+    return ArenaError, NeuronsError, CogmapError, cyclopts.CycloptsError
 
 
 def _say(message: Warning | str, *_: object, **__: object) -> None:

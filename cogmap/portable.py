@@ -11,12 +11,9 @@ from functools import cache
 
 import llvmlite.binding as llvm
 import numpy as np
-import scipy.linalg
-import torch
 from numpy.typing import ArrayLike
 
 from cogmap.errors import CogmapError
-from cogmap.threads import one_thread
 
 PINNED = {
     # On processors of other makers than Intel, MKL knows no other branch that is the same everywhere.
@@ -60,6 +57,12 @@ def arithmetic() -> str:
     Where it differs, maps and what is measured on them differ by rounding; where it is the same, they are
     equal to the bit.
     """
+    # Here, so that `cogmap portable` does not load what the command that it runs loads anew.
+    import scipy.linalg  # noqa: PLC0415
+    import torch  # noqa: PLC0415
+
+    from cogmap.threads import one_thread  # noqa: PLC0415
+
     rng = np.random.default_rng(0)
     a, b = rng.standard_normal((64, 1350)), rng.standard_normal((1350, 60))
     x, y = torch.from_numpy(a).float(), torch.from_numpy(b).float()

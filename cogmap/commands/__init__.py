@@ -1,6 +1,27 @@
-"""The commands of `cogmap`, by what they are about; each registers with `app` where it is defined."""
+"""The commands of `cogmap`, by what they are about; each is imported when it is called or its help is read."""
 
-from cogmap.commands import maps, results, rooms, running
-from cogmap.commands.app import app
+from cyclopts import App
 
-__all__ = ["app", "maps", "results", "rooms", "running"]
+__all__ = ["app"]
+
+app = App(
+    name="cogmap",
+    help="Grow place cells and head-direction cells from sight and smell alone.",
+    version_flags=["--version"],
+    result_action="return_value",
+)
+_COMMANDS = {
+    "arena": "rooms:_arena",
+    "demo": "results:_demo",
+    "experiment": "results:experiment_command",
+    "explore": "rooms:_explore",
+    "export": "maps:_export",
+    "learn": "maps:_learn",
+    "report": "results:_page",
+    "score": "maps:_score",
+    "sweep": "results:_sweep",
+}
+for _name, _home in _COMMANDS.items():
+    app.command(f"{__name__}.{_home}", name=_name)
+# Flags after it are those of the command that it runs.
+app.command(f"{__name__}.running:_portable", name="portable", help_flags=[], version_flags=[])

@@ -8,7 +8,7 @@ import numpy as np
 
 from arena import Recording
 from arena.atomic import check_absent
-from cogmap.commands.app import Json, Seed, app, tell
+from cogmap.commands.common import Json, Seed, tell
 from cogmap.errors import CogmapError
 from cogmap.evaluation.populations import usual_charts
 from cogmap.evaluation.scoring import score
@@ -16,7 +16,6 @@ from cogmap.export import export_nwb
 from cogmap.map.cognitive_map import CognitiveMap
 
 
-@app.command(name="learn")
 def _learn(
     recording: Path, /, *, out: Path, charts: int | None = None, seed: Seed = 0, as_json: Json = False
 ) -> None:
@@ -42,7 +41,6 @@ def _learn(
     tell(about, as_json=as_json)
 
 
-@app.command(name="score")
 def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False) -> None:
     """Score a map on a fresh recording against the true poses.
 
@@ -64,7 +62,6 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
     tell({**_verdict(grown), **figures}, as_json=as_json)
 
 
-@app.command(name="export")
 def _export(recording: Path, cmap: Path, /, *, out: Path, seed: Seed = 0, as_json: Json = False) -> None:
     """Write a recording with the rates and spikes of a map's cells as NWB; needs `pip install 'cogmap[nwb]'`.
 

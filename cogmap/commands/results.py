@@ -5,10 +5,10 @@ import sys
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import Parameter
+from cyclopts import App, Parameter
 
 from arena import Arena
-from cogmap.commands.app import Json, Seed, app, tell
+from cogmap.commands.common import Json, Seed, tell
 from cogmap.errors import CogmapError
 from cogmap.experiments.demo import demo
 from cogmap.experiments.registry import listing, run_experiment
@@ -17,7 +17,6 @@ from cogmap.sweeps import Plan, sweep
 from cogmap.tables import as_markdown
 
 
-@app.command(name="demo")
 def _demo(
     *,
     arena: str = "furnished",
@@ -65,7 +64,10 @@ Examples: `cogmap experiment rotation`; `cogmap experiment brownian --views 4000
 """
 
 
-@app.command(name="experiment", help=_help())
+experiment_command = App(name="experiment", help=_help())
+
+
+@experiment_command.default
 def _experiment(
     name: str | None = None,
     /,
@@ -109,7 +111,6 @@ def _experiment(
     tell(result.metrics, as_json=as_json)
 
 
-@app.command(name="sweep")
 def _sweep(
     plan: Path,
     /,
@@ -161,7 +162,6 @@ def _sweep(
     tell({"table": str(out / "table.csv"), **counts}, as_json=as_json)
 
 
-@app.command(name="report")
 def _page(folder: Path, /, *, out: Path | None = None, as_json: Json = False) -> None:
     """Show a result as one HTML page that needs nothing else: figures, tables, parameters, versions.
 

@@ -11,13 +11,12 @@ from arena.atomic import check_absent
 from arena.bodies.catalogue import bodies
 from arena.motions.catalogue import motions
 from cogmap.atomic import atomic_write
-from cogmap.commands.app import Json, Seed, app, tell
+from cogmap.commands.common import Json, Seed, tell
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_choice
 from cogmap.plots import plot_room, plot_sheet
 
 
-@app.command(name="arena")
 def _arena(
     name: str | None = None,
     /,
@@ -65,7 +64,6 @@ def _arena(
     tell(described, as_json=as_json)
 
 
-@app.command(name="explore")
 def _explore(
     arena: str,
     /,

@@ -5,12 +5,11 @@ from typing import Annotated, NoReturn
 
 from cyclopts import Parameter
 
-from cogmap.commands.app import app
+from cogmap.commands import app
 from cogmap.errors import CogmapError
 from cogmap.portable import portable_environment
 
 
-@app.command(name="portable", help_flags=[], version_flags=[])  # those are the command's own
 def _portable(*command: Annotated[str, Parameter(allow_leading_hyphen=True)]) -> NoReturn:
     """Run a command so that it gives the same arrays on every x86-64 processor with AVX2.
 

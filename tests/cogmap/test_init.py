@@ -9,26 +9,39 @@ import pytest
 import cogmap
 
 ROOT = Path(__file__).parents[2]
-HEAVY = "cogmap.experiments matplotlib gudhi ripser gymnasium sklearn pandas zarr numba pynndescent"
+HEAVY = (
+    "arena torch cogmap.experiments matplotlib gudhi ripser gymnasium sklearn pandas zarr numba pynndescent"
+)
 
 
-def loaded_by(code: str) -> set[str]:
-    """Tell which heavy modules a fresh interpreter holds after some code."""
-    script = f"{code}; import sys; print(*sys.modules.keys() & {set(HEAVY.split())})"
-    done = subprocess.run(
-        [sys.executable, "-c", script], check=True, cwd=ROOT, capture_output=True, text=True
+@pytest.fixture(scope="module")
+def loaded() -> dict[str, set[str]]:
+    """Which heavy modules a fresh interpreter holds after each of these lines, one after the other."""
+    lines = (
+        "from cogmap.cli import app; app['portable']",
+        "import cogmap",
+        "cogmap.CognitiveMap(seed=1)",
+        "cogmap.betti",
+        "cogmap.plots.plot_room",
     )
-    return set(done.stdout.split())
+    heavy = set(HEAVY.split())
+    script = "".join(f"{line}\nprint(*sys.modules.keys() & {heavy})\n" for line in lines)
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys\n{script}"], check=True, cwd=ROOT, capture_output=True, text=True
+    )
+    return {line: set(held.split()) for line, held in zip(lines, done.stdout.split("\n"), strict=False)}
 
 
-@pytest.mark.parametrize("code", ["import cogmap", "import cogmap; cogmap.CognitiveMap(seed=1)"])
-def test_nothing_heavy_is_imported_until_it_is_used(code: str) -> None:
-    assert not loaded_by(code)
+def test_nothing_heavy_is_imported_until_it_is_used(loaded: dict[str, set[str]]) -> None:
+    assert not loaded["from cogmap.cli import app; app['portable']"]
+    assert not loaded["import cogmap"]
+    assert loaded["cogmap.CognitiveMap(seed=1)"] == {"torch"}
 
 
-@pytest.mark.parametrize(("used", "module"), [("plots.plot_room", "matplotlib"), ("betti", "gudhi")])
-def test_what_is_used_is_imported(used: str, module: str) -> None:
-    assert module in loaded_by(f"import cogmap; cogmap.{used}")
+def test_what_is_used_is_imported(loaded: dict[str, set[str]]) -> None:
+    assert "gudhi" in loaded["cogmap.betti"]
+    assert "matplotlib" not in loaded["cogmap.betti"]
+    assert "matplotlib" in loaded["cogmap.plots.plot_room"]
 
 
 def test_every_name_is_found_and_listed() -> None:
