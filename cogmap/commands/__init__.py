@@ -1,4 +1,4 @@
-"""The commands of `cogmap`, by what they are about; each is imported when it is called or its help is read."""
+"""The commands of `cogmap`, each of them imported when it is called or its help is read."""
 
 from cyclopts import App
 
