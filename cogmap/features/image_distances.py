@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float
-from scipy.spatial.distance import cdist
 from sklearn.utils import gen_batches
 
 from cogmap.errors import CogmapError
@@ -15,6 +14,8 @@ Distances = Float[np.ndarray, "queries views"]
 
 BLOCK = 256
 """Views compared at a time."""
+PIXELS = 16_384
+"""Grey levels of each compared at a time."""
 
 
 def pixel_distances(queries: Any, views: Any) -> Distances:
@@ -32,10 +33,21 @@ def pixel_distances(queries: Any, views: Any) -> Distances:
     """
     _check_pair(queries, views)
     pixels = int(np.prod(queries.shape[1:]))
-    ours = np.asarray(queries).reshape(-1, pixels).astype(np.float32)
-    blocks = (np.asarray(views[block]) for block in gen_batches(views.shape[0], BLOCK))
-    found = [cdist(ours, block.reshape(-1, pixels).astype(np.float32)) for block in blocks]
-    return np.asarray(np.concatenate(found, axis=1) / np.sqrt(pixels))
+    ours = np.asarray(queries).reshape(-1, pixels)
+    squares = np.empty((len(ours), views.shape[0]))
+    for block in gen_batches(views.shape[0], BLOCK):
+        theirs = np.asarray(views[block]).reshape(-1, pixels)
+        squares[:, block] = sum(
+            _squared_distances(ours[:, part].astype(float), theirs[:, part].astype(float))
+            for part in gen_batches(pixels, PIXELS)
+        )
+    return np.asarray(np.sqrt(squares) / np.sqrt(pixels))
+
+
+def _squared_distances(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    # |a - b|² as |a|² + |b|² - 2 a·b, a product of matrices: exact, for these are whole numbers below 2^53.
+    lengths = [np.square(rows).sum(axis=1) for rows in (one, other)]
+    return np.asarray(np.add.outer(*lengths) - 2 * one @ other.T)
 
 
 def cosine_distances(queries: sp.csr_array, views: sp.csr_array) -> Distances:

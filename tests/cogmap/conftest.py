@@ -4,6 +4,7 @@ import pytest
 
 from arena import Arena, Brownian, Camera, Recording, explore
 from cogmap import CognitiveMap
+from cogmap.features import vocabulary
 
 VIEWS, CHARTS = 5000, 1000
 
@@ -29,3 +30,9 @@ def grow() -> Callable[[Recording], CognitiveMap]:
 @pytest.fixture(scope="session")
 def cmap(walk: Recording, grow: Callable[[Recording], CognitiveMap]) -> CognitiveMap:
     return grow(walk)
+
+
+@pytest.fixture
+def few_examples(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Visual words are learnt from a fifth of what they usually are: k-means takes most of a small experiment."""
+    monkeypatch.setattr(vocabulary, "EXAMPLES", 5000)

@@ -68,6 +68,7 @@ def test_no_two_have_the_same_name() -> None:
         experiment(room="furnished", views=200)(fusion)
 
 
+@pytest.mark.usefixtures("few_examples")
 @pytest.mark.parametrize("name", VIEWS)
 def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> None:
     out = tmp_path / name
@@ -89,6 +90,7 @@ def test_the_white_room_is_confused_and_the_blue_wall_is_not() -> None:
     assert metrics["confusion_blue_wall"] < 0.02
 
 
+@pytest.mark.usefixtures("few_examples")
 def test_the_same_seed_gives_the_same_tables() -> None:
     room = Arena.load("open_field")
     one, same = (run_experiment("rotation", views=200, seed=2, room=room) for _ in range(2))
