@@ -120,9 +120,9 @@ def _by_products(cloud: Checked, queries: Checked | None, neighbours: int) -> Ne
     best = np.zeros((sum(map(len, rows)), neighbours), np.result_type(rows[0], columns[0]))
     names = np.full(best.shape, -1)
     with threadpool_limits(limits=1):
-        products = Parallel(cpu_count(), backend="threading", return_as="generator")(
-            delayed(np.matmul)(rows[a], columns[b].T) for a, b in pairs
-        )
+        # For one product no threads need be started.
+        crew = Parallel(cpu_count() if len(pairs) > 1 else 1, backend="threading", return_as="generator")
+        products = crew(delayed(np.matmul)(rows[a], columns[b].T) for a, b in pairs)
         for (a, b), cosines in zip(pairs, products, strict=True):
             here, there = (slice(block * BLOCK, (block + 1) * BLOCK) for block in (a, b))
             if queries is None and a == b:

@@ -13,8 +13,8 @@ WINDOW = 4
 """Mean lengths of an edge by which paths grow at a time; from 1 to 12 the time hardly changes."""
 IDLE, QUEUED, WAITS = 0, 1, 2
 """Where a point is while paths grow: nowhere, in the ring of those to visit, in the list of those too far."""
-TASK = 8
-"""Sources measured by a thread at a time, some milliseconds of work."""
+TASK = 2_000_000
+"""Edges that a thread passes at a time, some milliseconds of work; less is done without threads."""
 
 
 class Paths:
@@ -62,9 +62,11 @@ class Paths:
         sources = np.asarray(sources, np.int64)
         targets = np.arange(len(self)) if targets is None else np.asarray(targets, np.int64)
         found = np.empty((len(sources), len(targets)))
-        Parallel(cpu_count(), backend="threading")(
+        size = max(8, TASK // max(1, len(self._edges[1])))
+        tasks = [slice(first, first + size) for first in range(0, len(sources), size)]
+        Parallel(cpu_count() if len(tasks) > 1 else 1, backend="threading")(
             delayed(_measure)(*self._edges, self._window, sources[task], targets, found[task])
-            for task in (slice(first, first + TASK) for first in range(0, len(sources), TASK))
+            for task in tasks
         )
         return found
 

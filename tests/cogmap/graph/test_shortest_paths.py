@@ -27,12 +27,15 @@ def clouds() -> dict[str, sp.csr_array]:
     }
 
 
-@pytest.mark.parametrize("window", [0.0, 1e-9, shortest_paths.WINDOW, 1e9])
+@pytest.mark.parametrize(
+    ("window", "task"), [(0.0, 1), (1e-9, 1), (shortest_paths.WINDOW, 1), (1e9, shortest_paths.TASK)]
+)
 @pytest.mark.parametrize("name", clouds())
 def test_lengths_are_those_of_dijkstra_to_the_bit(
-    name: str, window: float, monkeypatch: pytest.MonkeyPatch
+    name: str, window: float, task: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(shortest_paths, "WINDOW", window)
+    monkeypatch.setattr(shortest_paths, "TASK", task)
     graph = clouds()[name]
     points = graph.shape[0]
     sources = np.arange(0, points, max(1, points // 20))
