@@ -4,7 +4,9 @@ import pkgutil
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -130,7 +132,23 @@ def test_a_kernel_divides_by_zero_and_leaves_the_setting_of_others(monkeypatch: 
     assert config.CACHE_DIR == "of others"
 
 
-LOOK = """
+HELPER = """
+from small.kernels import kernel
+
+@kernel(inline="always")
+def shared(x):
+    return 3 * x
+"""
+CALLER = """
+from small.eye.helper import shared
+from small.kernels import kernel
+
+@kernel()
+def looked_at(x):
+    return shared(x)
+"""
+SMALL = "from small.eye.caller import looked_at; print(looked_at(7)); from small.kernels import _folder"
+ARENA = """
 import sys
 import numpy as np
 from arena import Arena, Camera, Nose
@@ -138,15 +156,54 @@ from arena.kernels import _folder
 room, pose = Arena.load("furnished"), np.array([(0.3, -0.2, 1.0)])
 sys.stdout.buffer.write(Camera.panoramic(36, 12).render(room, pose).tobytes())
 Nose().smell(room.odours.concentration(pose[:, :2]), np.zeros(1), np.random.default_rng(0))
-print(_folder, end="", file=sys.stderr)
 """
 
 
-def test_an_edit_shows_at_once_and_nothing_need_be_writable(tmp_path: Path) -> None:
-    copy = tmp_path / "arena"
-    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    helper = copy / "eye" / "texture_sampling.py"
-    source = helper.read_text(encoding="utf-8")
+def small(folder: Path) -> Path:
+    """Make a package of two kernels, one inlined into that of another file, with the arena's `kernels`."""
+    package = folder / "small"
+    for name in ("eye", "smell", "rooms"):
+        (package / name).mkdir(parents=True)
+    (package / "eye" / "helper.py").write_text(HELPER, encoding="utf-8")
+    (package / "eye" / "caller.py").write_text(CALLER, encoding="utf-8")
+    shutil.copy(PACKAGE / "kernels.py", package)
+    return package
+
+
+def arena_itself(folder: Path) -> Path:
+    shutil.copytree(PACKAGE, folder / "arena", ignore=shutil.ignore_patterns("__pycache__"))
+    return folder / "arena"
+
+
+class Looked(NamedTuple):
+    """A package, a look at it, a kernel, and a file of helpers with an edit of it."""
+
+    make: Callable[[Path], Path]
+    look: str
+    kernel: str
+    helper: str
+    edit: tuple[str, str]
+
+
+BLEND = "np.uint16(share * second)", "np.uint16(0.5 * share * second)"
+
+
+@pytest.mark.parametrize(
+    "looked",
+    [
+        Looked(small, SMALL, "caller.looked_at", "helper.py", ("3 * x", "4 * x")),
+        # Compiled three times over, which takes most of a minute.
+        pytest.param(
+            Looked(arena_itself, ARENA, "render.render", "texture_sampling.py", BLEND),
+            marks=pytest.mark.full,
+        ),
+    ],
+    ids=["small", "arena"],
+)
+def test_an_edit_shows_at_once_and_nothing_need_be_writable(looked: Looked, tmp_path: Path) -> None:
+    copy = looked.make(tmp_path)
+    edited = copy / "eye" / looked.helper
+    source = edited.read_text(encoding="utf-8")
     settings = {
         key: os.environ[key] for key in os.environ if key not in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME")
     }
@@ -154,24 +211,25 @@ def test_an_edit_shows_at_once_and_nothing_need_be_writable(tmp_path: Path) -> N
     settings |= {"PYTHONPATH": str(tmp_path), "HOME": "/dev/null", "NUMBA_OPT": "1"}
 
     def look() -> tuple[bytes, str]:
+        script = f"{looked.look}\nimport sys; print(_folder, end='', file=sys.stderr)"
         run = subprocess.run(
-            [sys.executable, "-c", LOOK], cwd=tmp_path, env=settings, capture_output=True, check=False
+            [sys.executable, "-c", script], cwd=tmp_path, env=settings, capture_output=True, check=False
         )
         assert run.returncode == 0, run.stderr.decode()
         return run.stdout, run.stderr.decode()
 
     before, folder = look()
-    assert list(Path(folder).rglob("render.render-*.nbc"))
-    view = Camera.panoramic(36, 12).render(Arena.load("furnished"), np.array([(0.3, -0.2, 1.0)]))
-    assert before == view.tobytes()
+    assert list(Path(folder).rglob(f"{looked.kernel}-*.nbc"))
+    if looked.make is arena_itself:
+        view = Camera.panoramic(36, 12).render(Arena.load("furnished"), np.array([(0.3, -0.2, 1.0)]))
+        assert before == view.tobytes()
     assert list((copy / "__pycache__").glob("kernels-*")) == [Path(folder)]
     # Inlined into kernels of another file, which stays as it is.
-    edited = source.replace("np.uint16(share * second)", "np.uint16(0.5 * share * second)")
-    assert edited != source
-    helper.write_text(edited, encoding="utf-8")
+    assert looked.edit[0] in source
+    edited.write_text(source.replace(*looked.edit), encoding="utf-8")
     after, _ = look()
     assert after != before
-    helper.write_text(source, encoding="utf-8")
+    edited.write_text(source, encoding="utf-8")
     shutil.rmtree(copy / "__pycache__")
     (copy / "__pycache__").touch()
     for path in (copy, *copy.rglob("*")):
