@@ -9,7 +9,19 @@ import pytest
 
 from tests.guards import described, too_near
 
+LONGEST = (
+    "test_running", "test_notebooks", "test_portable", "test_registry", "test_readme", "test_directionality",
+    "test_topology_of_maps", "test_development_and_lesions", "test_cognitive_map", "test_cli", "test_gallery",
+    "test_metric_map", "test_exploration", "test_merging", "test_fusion",
+)  # fmt: skip
+"""Files that are begun first, so that no worker waits for another at the end."""
 GROWN = pytest.StashKey[set[str]]()
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the longest files."""
+    ranks = {name: rank for rank, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: ranks.get(item.path.stem, len(ranks)))
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -34,5 +34,5 @@ def cmap(walk: Recording, grow: Callable[[Recording], CognitiveMap]) -> Cognitiv
 
 @pytest.fixture
 def few_examples(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Visual words are learnt from a fifth of what they usually are: k-means takes most of a small experiment."""
+    """Learn visual words from fewer descriptors: k-means would take most of a small experiment."""
     monkeypatch.setattr(vocabulary, "EXAMPLES", 5000)
