@@ -1,7 +1,7 @@
 """The retina: low acuity and contrast gain control of a panoramic strip."""
 
 import torch
-from jaxtyping import Float, UInt8
+from jaxtyping import Float, Int, UInt8
 from torch import Tensor, nn
 
 from neurons.errors import NeuronsError
@@ -92,45 +92,64 @@ class Retina(nn.Module):
         blur = _circular_gaussian(columns, acuity)
         differences = blur - _circular_gaussian(columns, surround)
         # not saved with a map: they follow from the size of its views
-        average = _area_average(height // down, rows) / (down * across)
-        self.average: Tensor = nn.Buffer(average, persistent=False)
-        centre_surround = _area_average(width // across, columns).T @ differences
-        self.centre_surround: Tensor = nn.Buffer(centre_surround, persistent=False)
+        self.average: Tensor = nn.Buffer(_area_average(height // down, rows), persistent=False)
+        across_mean = _area_average(width // across, columns) / (down * across)
+        self.centre_surround: Tensor = nn.Buffer(across_mean.T @ differences, persistent=False)
         self.pooling: Tensor = nn.Buffer(_circular_gaussian(columns, pool), persistent=False)
         self.blur: Tensor = nn.Buffer(blur, persistent=False)
 
     def forward(self, views: UInt8[Tensor, "views height width 3"]) -> Float[Tensor, "views features"]:
         """Turn views into normalised strips, rows × colours × columns."""
-        strips = torch.empty(len(views), self.features)
-        # 32 views of 60 × 360 are 2 MB; more leave the processor's cache
-        for batch, out in zip(views.split(32), strips.split(32), strict=True):
-            self._look(batch, out)
+        strips = self.blur.new_empty(len(views), self.features)
+        # 2 MB, 32 views of 60 × 360; more leave the processor's cache
+        batches = views.split(min(32, 1 + 2_000_000 // views.shape[1:].numel()))
+        # made once for all batches: memory fresh from the system costs more time than what is done in it
+        (down, across), (most, height, width, _) = self.block, batches[0].shape
+        wide = torch.int16 if down * across <= 128 else torch.int32  # two bytes hold a sum of 128 pixels
+        sums = views.new_empty(2, most, height // down, 3 * width, dtype=wide)
+        pixels = strips.new_empty(most, height // down, 3, width // across)
+        lines = strips.new_empty(most, len(self.average) * 3, len(self.blur))
+        for batch, out in zip(batches, strips.split(len(batches[0])), strict=True):
+            n = len(batch)
+            self._average(batch, sums[:, :n], pixels[:n])
+            self._look(pixels[:n], lines[:n], out)
         return strips
 
-    def _look(
-        self, views: UInt8[Tensor, "batch height width 3"], out: Float[Tensor, "batch features"]
+    def _average(
+        self,
+        views: UInt8[Tensor, "batch height width 3"],
+        sums: Int[Tensor, "2 batch rows bytes"],
+        out: Float[Tensor, "batch rows 3 pixels"],
     ) -> None:
+        """Sum blocks of pixels, and part the colours."""
         down, across = self.block
-        # two bytes hold a sum of 128 pixels
-        wide = torch.int16 if down * across <= 128 else torch.int32
-        lines = _sums(views.flatten(2).unflatten(1, (-1, down)), 2, wide)
-        pixels = _sums(lines.unflatten(2, (-1, across, 3)), 3, wide).float()
-        rows = self.average @ pixels.flatten(2)
-        colours = rows.unflatten(2, (-1, 3)).transpose(2, 3).flatten(0, 2)
-        strip = (colours @ self.centre_surround).unflatten(0, (len(views), -1))
+        total, other = sums
+        first, *others = views.flatten(2).unflatten(1, (-1, down)).unbind(2)
+        total.copy_(first)
+        for line in others:
+            total += other.copy_(line)
+        # at every byte and not at every block: what is contiguous is added many times as fast
+        total, other = total.flatten(), other.flatten()
+        ends = len(total) - 3 * (across - 1)
+        beside = total
+        for pixel in range(1, across):
+            beside = torch.add(beside[:ends], total[3 * pixel :][:ends], out=other[:ends])
+        step = (out.shape[1] * 3 * across * out.shape[3], 3 * across * out.shape[3], 1, 3 * across)
+        out.copy_(beside.as_strided(out.shape, step))
+
+    def _look(
+        self,
+        pixels: Float[Tensor, "batch rows 3 pixels"],
+        lines: Float[Tensor, "batch lines columns"],
+        out: Float[Tensor, "batch features"],
+    ) -> None:
+        if pixels.shape[1] > len(self.average):
+            pixels = (self.average @ pixels.flatten(2)).unflatten(2, pixels.shape[2:])
+        torch.mm(pixels.flatten(0, 2), self.centre_surround, out=lines.flatten(0, 1))
         # over rows and colours alike: one gain per column, so that a view keeps its colours;
         # pooled before the root: squares add up across columns, their roots do not
-        contrast = (strip.square().mean(dim=1, keepdim=True) @ self.pooling).sqrt()
+        contrast = (lines.square().mean(dim=1, keepdim=True) @ self.pooling).sqrt()
         # never 0: even a view of one colour is divided by `faintest`
-        gain = contrast + self.floor * contrast.mean(dim=2, keepdim=True) + self.faintest
+        lines /= contrast + self.floor * contrast.mean(dim=2, keepdim=True) + self.faintest
         # one product for all lines of the batch: a product for each view would pay for its start each time
-        torch.mm((strip / gain).flatten(0, 1), self.blur, out=out.view(-1, self.blur.shape[0]))
-
-
-def _sums(x: Tensor, dim: int, dtype: torch.dtype) -> Tensor:
-    """Sum over a short axis, addend by addend: many times as fast as `torch.sum` of integers."""
-    first, *others = x.unbind(dim)
-    total = first.to(dtype)
-    for addend in others:
-        total += addend
-    return total
+        torch.mm(lines.flatten(0, 1), self.blur, out=out.view(-1, len(self.blur)))
