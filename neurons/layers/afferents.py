@@ -4,6 +4,7 @@ import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
+from neurons.layers.charts import rows_of
 from neurons.layers.readout import ChartActivity
 
 
@@ -45,4 +46,4 @@ class Afferents(nn.Module):
         chart, weight = excited
         # the few active rows are divided, not the whole matrix of weights
         norm = self.activity.clamp(min=1e-12)[chart]
-        return torch.einsum("nw,nwc->nc", weight / norm, self.association[chart])
+        return torch.einsum("nw,nwc->nc", weight / norm, rows_of(self.association, chart))

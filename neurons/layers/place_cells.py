@@ -8,6 +8,7 @@ from torch import Tensor, nn
 
 from neurons.atlas.disambiguation import place_branches
 from neurons.layers.afferents import Afferents
+from neurons.layers.charts import rows_of
 from neurons.layers.readout import ChartActivity
 
 BLOCK = 256
@@ -97,7 +98,7 @@ class PlaceCells(nn.Module):
         self, excited: ChartActivity, log_odours: Float[Tensor, "views odorants"]
     ) -> Float[Tensor, "views cells"]:
         """Rates in Hz that a smell demands as far as the excited charts are those of the unit's place."""
-        here = torch.einsum("nw,nwc->nc", excited.weight, self.branches[excited.chart].float())
+        here = torch.einsum("nw,nwc->nc", excited.weight, rows_of(self.branches, excited.chart).float())
         return here * self.tuning(log_odours)
 
     def tuning(self, log_odours: Float[Tensor, "views odorants"]) -> Float[Tensor, "views cells"]:

@@ -9,7 +9,7 @@ from torch import Tensor, nn
 from neurons.angles import mean_angle
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.synchronisation import Compass
-from neurons.layers.charts import DIMENSIONS, Charts
+from neurons.layers.charts import DIMENSIONS, Charts, rows_of
 
 
 class ChartActivity(NamedTuple):
@@ -79,10 +79,11 @@ class Readout(nn.Module):
         """Heading in the map's own frame (rad) and recalled log odour."""
         chart, weight = excited
         # the difference before the product: n·z and n·C_k are large and nearly equal
-        residual = codes[:, None] - charts.centres[chart]
-        angle = self.phases[chart] + torch.einsum("nwc,nwc->nw", self.turning[chart], residual)
+        residuals = charts.residuals(codes, chart)
+        angle = self.phases[chart] + torch.einsum("nwc,nwc->nw", rows_of(self.turning, chart), residuals)
         # as directions: a mean of angles tears at ±π, and whole turns drop out unwrapped
         heading = mean_angle(angle, weight)
-        slope = torch.einsum("nwd,nwdo->nwo", charts.coordinates(codes, chart), self.jacobians[chart])
+        coordinates, jacobians = charts.coordinates(codes, chart), rows_of(self.jacobians, chart)
+        slope = torch.einsum("nwd,nwdo->nwo", coordinates, jacobians)
         odour = torch.einsum("nw,nwo->no", weight, self.intercepts[chart] + slope)
         return heading, odour
