@@ -1,67 +1,97 @@
-"""How learning from a stream goes on: memory and time per view, whatever came before."""
+"""How learning from a stream goes on: memory and time per view, whatever came before.
 
-import resource
+`python -m benchmarks.streaming 100000` streams so many views instead of a million.
+"""
+
+import json
 import sys
-import tempfile
 import time
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from itertools import product
 from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
 
-from arena import Brownian, Camera, Recording, explore
+from arena import Brownian, Camera, Disc, Nose
 from benchmarks.timing import ROOM, Figures
 from cogmap import CognitiveMap
 from neurons.stages import STAGES
 
-VIEWS = 200_000
-WALKED = 17_000
-PIECE = 1000
-"""Views of a walk that are handed over at once."""
+VIEWS = 1_000_000
+EXPLORERS = 64
+PIECE = 3125
+"""Views of an explorer that are learnt in a row, a fifth of its walk."""
 EPOCHS = 20
 """Of the stream: all stages are passed, and the last one lasts for six of them."""
 
 
+class Painted:
+    """Views from poses, painted when they are asked for and kept nowhere."""
+
+    dtype = np.dtype(np.uint8)
+
+    def __init__(self, poses: np.ndarray) -> None:
+        self._poses, self._camera = poses, Camera.panoramic()
+        self.shape = (len(poses), self._camera.height, self._camera.width, 3)
+
+    def __getitem__(self, rows: slice) -> np.ndarray:
+        return self._camera.render(ROOM, self._poses[rows])
+
+
 def streaming(views: int = VIEWS) -> Figures:
-    """Stream pieces of a walk, in an order of their own, in a process that does nothing else.
+    """Learn what 64 explorers see, piece by piece, in a process that does nothing else.
 
-    Views lie on disk, so that `peak_over_before_bytes` is what learning takes, the piece included;
-    `late_over_early` is the median time of a piece in the last tenth of the stream over that in the first
-    tenth's worth of the same stage.
+    `seconds` are of walking, painting and learning. `peak_over_before_bytes` is what painting and learning
+    take, batches included; `late_over_early` is the median time of a piece in the last tenth of the stream
+    over that in the first tenth's worth of the same stage.
     """
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "walk.zarr"
-        explore(ROOM, Brownian(), Camera.panoramic(), views=min(views, WALKED), seed=0, out=path)
-        with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as alone:
-            return alone.submit(learn, path, views).result()
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as alone:
+        return alone.submit(learn, views).result()
 
 
-def learn(path: Path, views: int) -> Figures:
-    """Learn from so many views, piece by piece, each followed by another from elsewhere."""
-    walk = Recording.open(path)
-    starts = np.arange(0, len(walk) - PIECE + 1, PIECE)
-    rng = np.random.default_rng(0)
+def learn(views: int) -> Figures:
+    """Learn from so many views, each piece followed by one of another explorer."""
+    Painted(np.zeros((4, 3)))[:]  # compiles
+    started = time.perf_counter()
+    with ProcessPoolExecutor(mp_context=get_context("spawn")) as walkers:
+        walks = list(walkers.map(partial(walk, views // EXPLORERS), range(EXPLORERS)))
+    walked = time.perf_counter() - started
     cmap = CognitiveMap(epoch=views // EPOCHS)
-    before, peaks, spent = peak(), [], []
-    for _ in range(views // PIECE):
-        start = rng.choice(starts)
-        piece = walk.views[start : start + PIECE]
-        started = time.perf_counter()
-        cmap.partial_fit(piece, walk.odours[start : start + PIECE], jump=True)
-        spent.append(time.perf_counter() - started)
+    before, peaks, spent, last = peak(), [], [], 0
+    for first, (poses, odours) in product(range(0, views // EXPLORERS, PIECE), walks):
+        piece = slice(first, first + PIECE)
+        begun = time.perf_counter()
+        cmap.partial_fit(Painted(poses[piece]), odours[piece], jump=True)
+        spent.append((time.perf_counter() - begun) / len(poses[piece]))
         peaks.append(peak())
-    tenth, begun = len(spent) // 10, cmap._network.begins(STAGES[-1].name) // PIECE  # noqa: SLF001
+        last += cmap._network.stage != STAGES[-1]  # noqa: SLF001
+    tenth = len(spent) // 10
     return {
-        "views": len(spent) * PIECE,
-        "views_per_s": len(spent) * PIECE / sum(spent),
+        "views": int(cmap._network.views_seen),  # noqa: SLF001
+        "seconds": time.perf_counter() - started,
+        "seconds_walking": walked,
+        "peak_bytes": peaks[-1],
         "peak_over_before_bytes": peaks[-1] - before,
         "peak_risen_in_last_tenth_bytes": peaks[-1] - peaks[-tenth - 1],
-        "late_over_early": float(np.median(spent[-tenth:]) / np.median(spent[begun : begun + tenth])),
+        "late_over_early": float(np.median(spent[-tenth:]) / np.median(spent[last + 1 :][:tenth])),
+        "untrusted_because": cmap.reason_,
     }
 
 
+def walk(views: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Give the poses of one explorer and what it smells."""
+    rng = np.random.default_rng(seed)
+    times, poses, _ = Brownian().walk(ROOM, Disc(), views, rng)
+    return poses, Nose().smell(ROOM.odours.concentration(poses[:, :2]), times, rng)
+
+
 def peak() -> int:
-    """Largest resident memory of this process so far, bytes."""
-    found = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return found if sys.platform == "darwin" else 1024 * found
+    """Largest resident memory of this process so far, bytes; `getrusage` would count its parent's."""
+    (line,) = (line for line in Path("/proc/self/status").read_text().splitlines() if "VmHWM" in line)
+    return 1024 * int(line.split()[1])
+
+
+if __name__ == "__main__":
+    print(json.dumps(streaming(*map(int, sys.argv[1:])), indent=2))
