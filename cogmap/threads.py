@@ -1,4 +1,4 @@
-"""Same arrays whatever the number of threads."""
+"""Same arrays whatever the number of threads, on every device."""
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
@@ -15,18 +15,29 @@ Item = TypeVar("Item")
 Done = TypeVar("Done")
 
 
+CPU = torch.device("cpu")
+
+
 @contextmanager
-def one_thread() -> Iterator[None]:
-    """Run torch, BLAS and OpenCV on one thread: sums are then always taken in the same order."""
+def one_thread(device: torch.device = CPU) -> Iterator[None]:
+    """Run torch, BLAS and OpenCV on one thread: sums are then always taken in the same order.
+
+    On another device than the processor, let torch use no algorithm in which chance orders them.
+    """
     threads, others = torch.get_num_threads(), cv2.getNumThreads()
+    ordered = device == CPU or torch.are_deterministic_algorithms_enabled()
     torch.set_num_threads(1)
     cv2.setNumThreads(1)
+    if not ordered:
+        torch.use_deterministic_algorithms(mode=True)
     try:
         with threadpool_limits(limits=1), torch.no_grad():
             yield
     finally:
         torch.set_num_threads(threads)
         cv2.setNumThreads(others)
+        if not ordered:
+            torch.use_deterministic_algorithms(mode=False)
 
 
 def in_order(work: Callable[[Item], Done], items: Iterable[Item]) -> Iterator[Done]:

@@ -111,3 +111,4 @@ class Circuit(nn.Module):
         # preferred directions stay as drawn: a map that was saved and loaded has no generator to go on with
         self.heading.afferents = Afferents(count, len(self.heading.preferred))
         self.agreement.fill_(torch.nan)
+        self.to(self.agreement.device)  # where the layers are that these replace

@@ -43,7 +43,7 @@ def merge(network: Network, other: Network) -> None:
     stage = _shared_stage(network)
     _check_kin(network, other, stage)
     for name in stage.sums:
-        network.get_buffer(name).add_(other.get_buffer(name))
+        network.get_buffer(name).add_(other.get_buffer(name).to(network.views_seen.device))
     begun = network.begins(stage.name)
     views_seen, others = int(network.views_seen), int(other.views_seen)
     together = views_seen + others - begun
@@ -65,7 +65,8 @@ def _shared_stage(network: Network) -> Stage[Any]:
 
 
 def _check_kin(network: Network, other: Network, stage: Stage[Any]) -> None:
-    mine, its = network.state_dict(), other.state_dict()
+    mine = network.state_dict()
+    its = {name: learnt.to(network.views_seen.device) for name, learnt in other.state_dict().items()}
     if (network.stages, network.epoch) != (other.stages, other.epoch) or any(
         mine[name].shape != its[name].shape for name in mine
     ):

@@ -121,4 +121,4 @@ class Network(Circuit):
     def _make_layers(self, first: int) -> None:
         for stage in self.stages[first:]:
             for name, layer in stage.layers(self).items():
-                self.add_module(name, layer)
+                self.add_module(name, layer.to(self.views_seen.device))

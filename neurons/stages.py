@@ -201,7 +201,7 @@ class OlfactionStage(CodedStage):
         compass = None
         with suppress(NeuronsError):  # no ring closes: `agreement` stays NaN, which `diagnosis` tells
             compass = synchronise(circuit.charts.centres, axes, atlas)
-            circuit.agreement = torch.tensor([compass.sign_agreement, compass.eigenvalue])
+            circuit.agreement = circuit.agreement.new_tensor([compass.sign_agreement, compass.eigenvalue])
         circuit.readout.solve(atlas, compass, intercepts, jacobians)
 
 

@@ -21,6 +21,7 @@ from tqdm import tqdm
 from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.inputs import check_views, checked_count, log_odours
 from cogmap.map.activity import Activity
+from cogmap.map.device import checked_device
 from cogmap.map.storage import read_map, write_map
 from cogmap.threads import in_order, one_thread
 from neurons.angles import mean_angle
@@ -59,6 +60,10 @@ class CognitiveMap:
         given.
     seed
         Of the initial weights and the order of views; the same seed gives the same bits.
+    device
+        Where it learns and perceives, as PyTorch names devices; it must know double precision. The same seed
+        gives the same bits on the same device, and on another one a map as good, of other last digits.
+        Arrays come from and go to the processor's memory, and a saved map loads on any device.
 
     Attributes
     ----------
@@ -76,7 +81,7 @@ class CognitiveMap:
     Raises
     ------
     CogmapError
-        For views or odours of the wrong shape, type or range, and for counts below 1.
+        For views or odours of the wrong shape, type or range, counts below 1, or a device that is not there.
     """
 
     charts: int = 3000
@@ -87,6 +92,7 @@ class CognitiveMap:
     heading_cells: int = 60
     epoch: int = 17_000
     seed: int = 0
+    device: str = "cpu"
 
     def fit(self, views: Any, odours: ArrayLike | None, *, progress: bool = False) -> CognitiveMap:
         """Learn a map from scratch, as epochs of `partial_fit` over the views.
@@ -103,18 +109,18 @@ class CognitiveMap:
             Whether to show a bar on stderr.
         """
         check_views(views)
-        smells = torch.from_numpy(log_odours(odours, views=views.shape[0]))
+        logs = log_odours(odours, views=views.shape[0])
         if views.shape[0] < checked_count("charts", self.charts):
             raise CogmapError(
                 f"there are {views.shape[0]} views for {self.charts} charts; "
                 "record more views or use fewer charts: about a fifth as many as views"
             )
-        self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=views.shape[0])
-        network, count = self._network, views.shape[0]
+        self._begin(tuple(views.shape[1:]), logs.shape[1], epoch=views.shape[0])
+        network, count, smells = self._network, views.shape[0], self._here(logs)
         order = np.random.default_rng(self.seed)
-        with one_thread(), tqdm(total=network.epochs, unit="epoch", disable=not progress) as bar:
+        with one_thread(self._device), tqdm(total=network.epochs, unit="epoch", disable=not progress) as bar:
             started = time.perf_counter()
-            strips = torch.empty(count, self._retina.features)
+            strips = smells.new_empty(count, self._retina.features)
             for rows, strip in self._strips(views):
                 strips[rows] = strip
             self.seconds_["retina"] = time.perf_counter() - started
@@ -129,7 +135,7 @@ class CognitiveMap:
                     see = type(stage).see
                     seen = joined([network.see(batch) for batch in strips.split(BATCH)])
                 epoch = np.arange(count) if stage.in_order else order.permutation(count)
-                for rows in torch.from_numpy(epoch).split(BATCH):
+                for rows in self._here(epoch).split(BATCH):
                     network.learn_seen(chosen(seen, rows), smells[rows])
                 self.seconds_[stage.name] = self.seconds_.get(stage.name, 0.0) + time.perf_counter() - started
                 bar.n = int(network.views_seen) // count
@@ -151,14 +157,13 @@ class CognitiveMap:
         """
         fresh = not hasattr(self, "_network")
         check_views(views, None if fresh else self.view_shape_)
-        smells = torch.from_numpy(
-            log_odours(odours, views=views.shape[0], odorants=None if fresh else self.odorants_)
-        )
+        logs = log_odours(odours, views=views.shape[0], odorants=None if fresh else self.odorants_)
         if fresh:
-            self._begin(tuple(views.shape[1:]), smells.shape[1], epoch=checked_count("epoch", self.epoch))
+            self._begin(tuple(views.shape[1:]), logs.shape[1], epoch=checked_count("epoch", self.epoch))
         if jump:
             self._network.break_sequence()
-        with one_thread():
+        with one_thread(self._device):
+            smells = self._here(logs)
             for rows, strip in self._strips(views):
                 self._network.learn(strip, smells[rows])
         return self
@@ -178,7 +183,7 @@ class CognitiveMap:
         network = self._grown
         other: CognitiveMap = copy(self)
         other.seconds_ = {}
-        with one_thread(), _at_the_edge():
+        with one_thread(self._device), _at_the_edge():
             other._network = forked(network)
         return other
 
@@ -205,7 +210,7 @@ class CognitiveMap:
         >>> away.partial_fit(views_there, odours_there, jump=True)
         >>> cmap.merge(away)  # as if it had seen both
         """
-        with one_thread(), _at_the_edge():
+        with one_thread(self._device), _at_the_edge():
             merge(self._grown, other._grown)
         return self
 
@@ -220,17 +225,17 @@ class CognitiveMap:
         network = self._grown
         if (views is None) == (odours is None):
             raise CogmapError("give either views, or odours for a look in the dark; not both or neither")
-        with one_thread():
+        with one_thread(self._device):
             if odours is not None:
-                smells = torch.from_numpy(log_odours(odours, odorants=self.odorants_))
+                smells = self._here(log_odours(odours, odorants=self.odorants_))
                 # float32, as everything that a map says of views
                 blind = np.full((len(smells), 1 + self.heading_cells), np.nan, np.float32)
                 return Activity(
-                    place=network.place.tuning(smells).numpy(),
+                    place=network.place.tuning(smells).cpu().numpy(),
                     heading=blind[:, 1:],
                     phase=blind[:, 0],
-                    odour=smells.numpy(),
-                    position=network.metric_map(network.place, smells).position.numpy(),
+                    odour=smells.cpu().numpy(),
+                    position=network.metric_map(network.place, smells).position.cpu().numpy(),
                 )
             check_views(views, self.view_shape_)
             if not self.trusted_:
@@ -238,14 +243,14 @@ class CognitiveMap:
                     f"this map is not to be trusted: {self.reason_}", UntrustedMapWarning, stacklevel=2
                 )
             parts = [self._look(strip) for _, strip in self._strips(views)]
-        return Activity(*(torch.cat(part).numpy() for part in zip(*parts, strict=True)))
+        return Activity(*(torch.cat(part).cpu().numpy() for part in zip(*parts, strict=True)))
 
     def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
         """Give the principal components of views, the space of the view manifold, float32."""
         network = self._grown
         check_views(views, self.view_shape_)
-        with one_thread():
-            return torch.cat([network.code(strip) for _, strip in self._strips(views)]).numpy()
+        with one_thread(self._device):
+            return torch.cat([network.code(strip) for _, strip in self._strips(views)]).cpu().numpy()
 
     @property
     def trusted_(self) -> bool:
@@ -286,21 +291,21 @@ class CognitiveMap:
             "epoch": network.epoch,
             "charts": len(network.charts),
         }
-        settings = {field.name: getattr(self, field.name) for field in fields(self)}
+        settings = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "device"}
         write_map(Path(path), network.state_dict(), settings, learnt)
 
     @classmethod
-    def load(cls, path: str | Path) -> CognitiveMap:
-        """Read a map that `save` wrote; it perceives the same bits.
+    def load(cls, path: str | Path, *, device: str = "cpu") -> CognitiveMap:
+        """Read a map that `save` wrote; on the device it was learnt on it perceives the same bits.
 
         Raises
         ------
         CogmapError
-            When it is missing, damaged or of another version.
+            When it is missing, damaged or of another version, or the device is not there.
         """
         weights, settings, learnt = read_map(Path(path))
         try:
-            loaded = cls(**settings)
+            loaded = cls(**settings, device=device)
             loaded._begin(
                 tuple(learnt["view_shape"]),
                 learnt["odorants"],
@@ -317,7 +322,8 @@ class CognitiveMap:
     ) -> None:
         first = checked_count("charts", self.charts)
         most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
-        self._retina = Retina(*view_shape[:2])
+        self._device = checked_device(self.device)
+        self._retina = Retina(*view_shape[:2]).to(self._device)
         self.view_shape_, self.odorants_ = view_shape, odorants
         self.seconds_: dict[str, float] = {}
         with one_thread():  # even the initial weights, orthonormal by QR, depend on the number of threads
@@ -330,8 +336,9 @@ class CognitiveMap:
                 place_cells=checked_count("place_cells", self.place_cells),
                 heading_cells=checked_count("heading_cells", self.heading_cells),
                 epoch=epoch,
+                # drawn on the processor: the same initial weights on every device
                 generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
-            )
+            ).to(self._device)
 
     @property
     def _grown(self) -> Network:
@@ -339,6 +346,10 @@ class CognitiveMap:
         if not hasattr(self, "_network"):
             raise CogmapError("this map has learnt nothing yet; call fit or partial_fit first")
         return self._network
+
+    def _here(self, array: np.ndarray) -> Tensor:
+        """Take an array to where the map learns."""
+        return torch.from_numpy(array).to(self._device)
 
     def _strips(self, views: Any) -> Iterator[tuple[slice, Float[Tensor, "views features"]]]:
         """Pass views through the retina in fixed batches, ahead of who takes the strips."""
@@ -349,7 +360,7 @@ class CognitiveMap:
                 yield rows, torch.from_numpy(np.ascontiguousarray(views[rows]))
 
         # read by one thread alone: whatever lazy views are made of need not bear several
-        return in_order(lambda batch: (batch[0], self._retina(batch[1])), batches())
+        return in_order(lambda batch: (batch[0], self._retina(batch[1].to(self._device))), batches())
 
     def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, ...]:
         """Rates of both populations, heading, recalled odour and position."""

@@ -13,8 +13,8 @@ from neurons.layers.afferents import Afferents
 
 
 def weights_of(cmap: CognitiveMap) -> dict[str, Tensor]:
-    """Copy all that a map has learnt, by the names it is saved under."""
-    return {name: weight.clone() for name, weight in cmap.state_dict().items()}
+    """Copy all that a map has learnt to the processor, by the names it is saved under."""
+    return {name: weight.to("cpu", copy=True) for name, weight in cmap.state_dict().items()}
 
 
 def with_state(cmap: CognitiveMap, changed: Mapping[str, Tensor]) -> CognitiveMap:

@@ -23,7 +23,7 @@ def write_map(
     described = {"version": VERSION, "settings": dict(settings), "learnt": dict(learnt)}
     with atomic_write(path, overwrite=False) as folder:
         folder.mkdir()
-        save_file({name: weight.contiguous() for name, weight in weights.items()}, folder / WEIGHTS)
+        save_file({name: weight.cpu().contiguous() for name, weight in weights.items()}, folder / WEIGHTS)
         (folder / SETTINGS).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 
 

@@ -50,7 +50,7 @@ class Atlas:
         nearest = near.gather(1, order[:, :wanted])
         # exact distances put the chart itself first, at 0
         overlap = nearest[:, 1 : overlaps + 1]
-        here = torch.arange(count)[:, None].expand_as(overlap)
+        here = torch.arange(count, device=centres.device)[:, None].expand_as(overlap)
         # smaller index first: k → j and j → k become equal, and `unique` keeps one
         pairs = torch.stack([torch.minimum(here, overlap), torch.maximum(here, overlap)], dim=2)
         return cls(

@@ -39,11 +39,11 @@ def place_branches(
         A group of active charts that evokes at least this part of what the strongest group does is a place.
     """
     # in double precision: sums over many charts are compared with each other and with shares
-    evoked = rates.double().numpy()
+    evoked = rates.double().cpu().numpy()
     count, cells = evoked.shape
-    k, j = edges.numpy().T
+    k, j = edges.cpu().numpy().T
     graph = csr_array((np.ones(2 * len(k)), (np.r_[k, j], np.r_[j, k])), shape=(count, count))
-    heading = np.exp(1j * phases.double().numpy())
+    heading = np.exp(1j * phases.double().cpu().numpy())
     groups = [_places(rate, heading, graph, active, rival) for rate in evoked.T]
     kept = np.ones((count, cells), dtype=bool)
     covered = np.zeros(count)
@@ -58,7 +58,7 @@ def place_branches(
             # of equals the first: a chart as far from two places goes to the one found first
             kept[:, cell] = steps.argmin(axis=0) == int(np.argmin(crowd))
         covered += evoked[:, cell] * kept[:, cell]
-    return torch.from_numpy(kept)
+    return torch.from_numpy(kept).to(rates.device)
 
 
 def _places(

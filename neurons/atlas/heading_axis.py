@@ -23,12 +23,18 @@ def heading_axes(
     gradients = gradients / gradients.square().sum(dim=(1, 2), keepdim=True).sqrt().clamp(min=1e-12)
     pooled = torch.einsum("kdc,kpco->kpdo", tangents, gradients[atlas.pool])
     change = torch.einsum("kpdo,kpeo->kde", pooled, pooled)
-    # in double precision, as the smallest eigenvalue is the square of what is small already
-    smallest = torch.linalg.eigh(change.double()).eigenvectors[:, :, 0].float()
+    smallest = _eigenvectors(change)[:, :, 0]
     axes = torch.einsum("kd,kdc->kc", smallest, tangents)
     # n nᵀ and not n, as the sign of an eigenvector is arbitrary
     lines = torch.einsum("kdc,kpc->kpd", tangents, axes[atlas.pool])
     mean_line = torch.einsum("kpd,kpe->kde", lines, lines)
     # the line that all agree on has the largest eigenvalue, and noise is spread over the other two
-    largest = torch.linalg.eigh(mean_line.double()).eigenvectors[:, :, -1].float()
+    largest = _eigenvectors(mean_line)[:, :, -1]
     return torch.einsum("kd,kdc->kc", largest, tangents)
+
+
+def _eigenvectors(matrices: Float[Tensor, "charts 3 3"]) -> Float[Tensor, "charts 3 3"]:
+    """Give the eigenvectors of symmetric matrices in the order of their eigenvalues, on any device."""
+    # in double precision, as the smallest eigenvalue may be the square of what is small already
+    found: Tensor = torch.linalg.eigh(matrices.double().cpu()).eigenvectors
+    return found.to(matrices)

@@ -96,7 +96,7 @@ class MetricMap(nn.Module):
         straight, direction = self._directions(walk[:, -1])
         # blocks of many times the lag, as displacements that overlap are not independent; short against a
         # walk, so that both halves see all of the room
-        half = (self.seen + torch.arange(len(straight))) // 128 % 2
+        half = (self.seen + torch.arange(len(straight), device=straight.device)) // 128 % 2
         self.seen += len(straight)
         share, patches = _patches(place, walk[:, :-1])
         moved = patches[self.lag :] - patches[: -self.lag]
@@ -122,7 +122,7 @@ class MetricMap(nn.Module):
             return
         pairs = (halves, halves[::-1])
         foretold = [mine.cross_validated_r2(*its.solve(self.ridge)) for mine, its in pairs]
-        self.cross_validated_r2 = torch.tensor(foretold)
+        self.cross_validated_r2 = self.cross_validated_r2.new_tensor(foretold)
         if not self.diagnosis():
             positions, turns = self._evidence(slice(0, 2)).solve(self.ridge)
             self.positions = torch.view_as_real(positions).float()
@@ -178,12 +178,12 @@ class _Evidence(NamedTuple):
         """Give β and f."""
         # cells that the walk never came by leave S singular
         # relative to the mean square of a feature, as sums grow with the walk
-        prior = ridge * self.spread.diagonal().mean() * torch.eye(len(self.spread), dtype=torch.double)
+        prior = ridge * self.spread.diagonal().mean() * torch.eye(len(self.spread)).to(self.spread)
         # S is real: two real right-hand sides cost half of a complex system
         parts = torch.view_as_real(self.ahead.mH.resolve_conj())
         solved = torch.linalg.solve(self.spread + prior, parts.flatten(1)).reshape(parts.shape)
         placing = torch.view_as_complex(solved.contiguous())
-        turns = torch.ones(len(self.ahead), dtype=torch.cdouble)
+        turns = torch.ones_like(self.ahead[:, 0])
         agreement = self.ahead @ placing
         for _ in range(100):  # nothing changes any more after about fifty
             # sgn(0) is 0: a cell without any displacement keeps out of it instead of turning NaN

@@ -100,14 +100,14 @@ def synchronise(
     ----------
     Singer (2011), Angular synchronization by eigenvectors and semidefinite programming. ACHA 30.
     """
-    overlaps = _Overlaps(atlas.edges.numpy(), len(centres))
+    overlaps = _Overlaps(atlas.edges.cpu().numpy(), len(centres))
     k, j = overlaps.edges.T
     graph = csc_array((np.ones(len(k)), (k, j)), shape=(len(centres),) * 2)
     pieces, _ = connected_components(graph, directed=False)
     if pieces > 1:
         raise NeuronsError(f"the atlas falls into {pieces} pieces; use more charts or more views")
     # in double precision: ω is a small difference of codes, and c·ω is summed around the whole ring
-    n, c = axes.double().numpy(), centres.double().numpy()
+    n, c = axes.double().cpu().numpy(), centres.double().cpu().numpy()
     agreement = np.einsum("ec,ec->e", n[k], n[j])
     _, vector = overlaps.top(agreement.astype(complex))
     # relative to the largest entry, as the phase of an eigenvector is arbitrary
@@ -117,9 +117,9 @@ def synchronise(
     omega = 0.5 * np.einsum("ec,ec->e", c[j] - c[k], n[k] + n[j])
     scale, eigenvalue, phases = _close_ring(overlaps, omega, np.geomspace(*scales), cells)
     return Compass(
-        axes=torch.from_numpy(n).float(),
+        axes=torch.from_numpy(n).to(axes),
         scale=scale,
-        phases=torch.from_numpy(phases).float(),
+        phases=torch.from_numpy(phases).to(axes),
         sign_agreement=float(signed.sum() / np.abs(agreement).sum()),
         eigenvalue=eigenvalue,
     )

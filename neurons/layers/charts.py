@@ -12,7 +12,8 @@ DIMENSIONS = 3
 
 def rows_of(table: Shaped[Tensor, "rows *row"], index: Int[Tensor, "*index"]) -> Shaped[Tensor, "..."]:
     """Take rows of a table, `table[index]`; whole ones, which is several times as fast."""
-    return table.index_select(0, index.flatten()).unflatten(0, index.shape)
+    rows = table.index_select(0, index.flatten())
+    return rows.reshape(*index.shape, *table.shape[1:])
 
 
 class NearestCharts(NamedTuple):
@@ -98,8 +99,8 @@ class Charts(nn.Module):
         one, other = one[longest], other[longest]
         self.centres = torch.cat([self.centres, (self.centres[one] + self.centres[other]) / 2])
         self.tangents = torch.cat([self.tangents, self.tangents[one]])
-        self.responsibility = torch.cat([self.responsibility, torch.zeros(len(longest))])
-        self.variances = torch.cat([self.variances, torch.zeros(len(longest), DIMENSIONS)])
+        self.responsibility = torch.cat([self.responsibility, self.responsibility.new_zeros(len(longest))])
+        self.variances = torch.cat([self.variances, self.variances.new_zeros(len(longest), DIMENSIONS)])
         self.initialised.fill_(len(self.centres))
 
     def _nearest(self, codes: Float[Tensor, "views components"], winners: int) -> Int[Tensor, "views _"]:
@@ -110,12 +111,12 @@ class Charts(nn.Module):
     def _compete(self, codes: Float[Tensor, "views components"], *, winners: int, window: float) -> None:
         chart = self._nearest(codes, winners)
         # the last of m winners learns about e⁻² as much as the first, whatever m is
-        h = torch.exp(-2.0 * torch.arange(chart.shape[1]) / chart.shape[1])
+        h = torch.exp(-2.0 * torch.arange(chart.shape[1], device=codes.device) / chart.shape[1])
         # only what has won is touched: a third of the charts, and of the memory
         won, flat = chart.flatten().unique(return_inverse=True)
         weight = h.repeat(len(codes))
         # index_add_ on one thread adds in the order of views, so that the same seed gives the same bits
-        fed = torch.zeros(len(won)).index_add_(0, flat, weight)
+        fed = codes.new_zeros(len(won)).index_add_(0, flat, weight)
         # forgotten by the batch, and never below zero where a batch is longer than the window
         self.responsibility *= max(0.0, 1 - len(codes) / window)
         self.responsibility[won] += fed
@@ -126,9 +127,9 @@ class Charts(nn.Module):
         residual = self.residuals(codes, chart).flatten(0, 1)
         y = torch.einsum("ndc,nc->nd", rows_of(tangents, flat), residual)
         weighted = weight[:, None] * y
-        shift = torch.zeros(len(won), residual.shape[1]).index_add_(0, flat, weight[:, None] * residual)
+        shift = codes.new_zeros(len(won), residual.shape[1]).index_add_(0, flat, weight[:, None] * residual)
         hebb = torch.zeros_like(tangents).index_add_(0, flat, weighted[:, :, None] * residual[:, None])
-        cross = torch.zeros(len(won), DIMENSIONS, DIMENSIONS).index_add_(
+        cross = codes.new_zeros(len(won), DIMENSIONS, DIMENSIONS).index_add_(
             0, flat, weighted[:, :, None] * y[:, None]
         )
         self.centres.index_add_(0, won, rate[:, None] * shift)

@@ -54,7 +54,7 @@ class HeadDirectionCells(nn.Module):
         flat = unit.flatten()
         # a batch longer than the window forgets everything, and not more than that
         self.responsibility *= max(0.0, 1 - len(headings) / window)
-        self.responsibility.index_add_(0, flat, torch.ones(len(flat)))
+        self.responsibility.index_add_(0, flat, apart.new_ones(len(flat)))
         # deviations are averaged, not angles: those would tear at ±π
         pull = torch.zeros_like(self.responsibility).index_add_(0, flat, apart.gather(1, unit).flatten())
         self.preferred = wrap_angle(self.preferred + pull / self.responsibility.clamp(min=1e-6))

@@ -74,12 +74,12 @@ class PlaceCells(nn.Module):
         flat = unit.flatten()
         # a batch longer than the window forgets everything, and not more than that
         self.responsibility *= max(0.0, 1 - len(log_odours) / window)
-        self.responsibility.index_add_(0, flat, torch.ones(len(flat)))
+        self.responsibility.index_add_(0, flat, distance.new_ones(len(flat)))
         # a unit that has not won yet has no weight to divide by, and its numerators are zero
         rate = 1 / self.responsibility.clamp(min=1e-6)
         # about centres that have not moved yet: around the new ones first wins would have no spread at all
         spread = (deviation[..., None] * deviation[:, :, None]).flatten(0, 1)
-        fed = torch.zeros_like(self.responsibility).index_add_(0, flat, torch.ones(len(flat)))
+        fed = torch.zeros_like(self.responsibility).index_add_(0, flat, distance.new_ones(len(flat)))
         drawn = torch.zeros_like(self.covariances).index_add_(0, flat, spread)
         self.covariances += rate[:, None, None] * (drawn - fed[:, None, None] * self.covariances)
         shift = torch.zeros_like(self.centres).index_add_(0, flat, deviation.flatten(0, 1))
@@ -125,7 +125,7 @@ class PlaceCells(nn.Module):
         # a unit that has learnt a single smell has no variance of its own
         mean = torch.diagonal(self.covariances, dim1=1, dim2=2).mean(dim=1).clamp(min=1e-9)
         # eigenvalues are then within `flatness` and odorants × mean: safe to invert
-        floor = self.flatness * mean[:, None, None] * torch.eye(odorants)
+        floor = self.flatness * mean[:, None, None] * torch.eye(odorants, device=mean.device)
         # In double precision, as the three terms are large and cancel.
         precision = torch.linalg.inv((self.covariances + floor).double())
         centres = self.centres.double()
