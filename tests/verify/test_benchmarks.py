@@ -24,10 +24,11 @@ BARS: dict[str, list[tuple[str, str, Any]]] = {
     "stepping": [("ratio", "≥", 10)],
     "learning": [("map/seconds", "≤", 15), ("map/over_slow_features", "≤", 1)],
     "streaming": [
-        ("views", "=", 200_000),
+        ("views", "=", 1_000_000),
+        ("seconds", "≤", 480),
         ("peak_over_before_bytes", "≤", 10**9),
         ("peak_risen_in_last_tenth_bytes", "≤", 2 * 10**7),
-        ("late_over_early", "≤", 1.3),
+        ("late_over_early", "≤", 1.1),
     ],
     "evaluating": [("place_cells/ratio", "≥", 10)],
     "manifold": [
