@@ -14,7 +14,6 @@ from threadpoolctl import threadpool_limits
 Item = TypeVar("Item")
 Done = TypeVar("Done")
 
-
 CPU = torch.device("cpu")
 
 

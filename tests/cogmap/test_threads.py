@@ -19,6 +19,13 @@ def test_one_thread_inside_and_what_was_before_outside() -> None:
     assert torch.is_grad_enabled()
 
 
+@pytest.mark.parametrize("device", ["cpu", "cuda"])
+def test_on_another_device_nothing_is_left_to_chance(device: str) -> None:
+    with one_thread(torch.device(device)):
+        assert torch.are_deterministic_algorithms_enabled() == (device != "cpu")
+    assert not torch.are_deterministic_algorithms_enabled()
+
+
 def test_what_comes_of_items_is_in_their_order_and_never_far_ahead() -> None:
     begun: list[int] = []
 
