@@ -9,8 +9,9 @@ from cogmap.errors import CogmapError
 
 def checked_device(name: str) -> torch.device:
     """Return a device that is there and knows double precision, or say which are."""
-    # without it products are not the same every time on NVIDIA's devices; read when the first is taken
-    os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")
+    if name != "cpu":
+        # without it products are not the same every time on NVIDIA's devices; read when the first is taken
+        os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")
     if not _works(name):
         kind = torch.accelerator.current_accelerator()
         others = [f"{kind}:{number}" for number in range(torch.accelerator.device_count())]
