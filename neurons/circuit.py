@@ -46,7 +46,7 @@ class Circuit(nn.Module):
     most_charts
         Up to how many charts can be added.
     generator
-        Draws the initial weights, on the processor; `to` takes all layers to another device, where they learn.
+        Draws the initial weights, on the processor; `to` takes the layers to another device, to learn there.
     least_eigenvalue
         Least agreement of the phases in an atlas to be trusted; at .998 headings have been seen 12° off.
     least_sign_agreement
