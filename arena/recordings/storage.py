@@ -12,7 +12,7 @@ from zarr.codecs import Crc32cCodec
 
 from arena.atomic import atomic_write
 from arena.errors import ArenaError
-from arena.recordings.sharding import SHARD, codecs, file, is_complete, shards
+from arena.recordings.sharding import SHARD, codecs, file, is_complete, read_images, shards
 
 VERSION = 3
 """Of the layout."""
@@ -26,9 +26,9 @@ class StoredViews:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._array = _opened(folder)
-        self.shape: tuple[int, ...] = self._array.shape
-        self.dtype = self._array.dtype
+        array = _opened(folder)
+        self.shape: tuple[int, ...] = array.shape
+        self.dtype = array.dtype
         self.ndim = len(self.shape)
 
     def __len__(self) -> int:
@@ -50,25 +50,20 @@ class StoredViews:
         index = np.arange(len(self))[rows]
         chosen = index.ravel()
         images = np.empty((len(chosen), *self.shape[1:]), np.uint8)
-        # One slice a shard: zarr's own indexing by arrays takes 10 ms a view.
         for shard in np.unique(chosen // SHARD):
             here = np.flatnonzero(chosen // SHARD == shard)
-            images[here] = self._read(shards(len(self))[shard], chosen[here])
+            self._read(shards(len(self))[shard], chosen[here] % SHARD, [images[row] for row in here])
         found = images.reshape(*index.shape, *self.shape[1:])
         return np.asarray(found[(slice(None),) * index.ndim + tuple(within)])
 
-    def _read(self, shard: slice, chosen: np.ndarray) -> np.ndarray:
-        first = chosen.min()
+    def _read(self, shard: slice, chosen: np.ndarray, out: list[np.ndarray]) -> None:
         try:
-            if not is_complete(self._folder, shard):  # for zarr, views of a shard that is gone are black
-                raise ValueError("the file is not whole")
-            found = np.asarray(self._array[first : chosen.max() + 1])
+            read_images(self._folder, shard, chosen, out)
         except _DAMAGE as error:
             raise ArenaError(
                 f"{file(self._folder, shard)} is damaged ({_first_line(error)}); remove it, and the same "
                 "`explore` command makes its views again"
             ) from None
-        return np.asarray(found[chosen - first])
 
 
 class Stored(NamedTuple):
