@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -75,8 +76,9 @@ def demo(
     charts = usual_charts(views) if charts is None else charts
     seconds: dict[str, float] = {}
     clock = partial(_timed, seconds)
-    with nullcontext() if out is None else result_folder(out) as folder:
-        conditions = Conditions(room, views, seed, progress, map={"charts": charts})
+    with nullcontext() if out is None else result_folder(out) as folder, TemporaryDirectory() as scratch:
+        # views stay on disk: a gigabyte, of which batches are in memory
+        conditions = Conditions(room, views, seed, progress, Path(scratch), map={"charts": charts})
         with clock("explore"):
             trial = Trial.of(conditions)
         with clock("learn"):

@@ -36,6 +36,20 @@ def test_it_writes_every_figure_the_map_and_the_metrics(result: tuple[Path, dict
     assert metrics.keys() >= KEYS
 
 
+def test_views_stay_on_disk_and_leave_nothing_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[Path] = []
+
+    def explore_no_more(*_: object, out: Path, **__: object) -> None:
+        seen.append(out.parent.parent)
+        raise CogmapError("seen enough")
+
+    monkeypatch.setattr("cogmap.experiments.conditions.explore", explore_no_more)
+    with pytest.raises(CogmapError, match="seen enough"):
+        demo(Arena.load("furnished"), tmp_path / "out", views=20)
+    assert seen
+    assert not seen[0].exists()
+
+
 def test_even_a_small_one_learns(result: tuple[Path, dict[str, Any]]) -> None:
     _, metrics = result
     assert metrics["trusted"], metrics["reason"]
