@@ -146,10 +146,11 @@ class Camera(Settings):
             )
         if self.noise and rng is None:
             raise ArenaError(f"the camera has noise {self.noise:g}; give `rng`, a numpy.random.Generator")
-        lens, ray = self._optics
-        sky = backdrop(lens, arena.scene.floor[:3], arena.ceiling, arena.zenith)
+        (lens, ray), (faces, floor, *textures) = self._optics, arena.scene
+        sky = backdrop(lens, floor[:3], arena.ceiling, arena.zenith)
+        scene = (faces, tuple(floor), *textures), tuple(lens), tuple(sky), ray
         rows = out.reshape(*shape[:2], 3 * self.width)
-        _in_threads(lambda at: render.render(poses[at], arena.scene, lens, sky, ray, rows[at]), len(poses))
+        _in_threads(lambda at: render.render(poses[at], *scene, rows[at]), len(poses))
         if rng is not None and self.noise:
             for image in out:
                 grain = rng.standard_normal(image.shape, dtype=np.float32)
@@ -200,14 +201,14 @@ class Camera(Settings):
 
 def _in_threads(work: Callable[[slice], None], views: int) -> None:
     """Do consecutive views each in a thread of its own, as many as numba has."""
-    # For fewer a thread takes longer to start than to work.
-    share = max(-(-views // numba.get_num_threads()), 16)
-    parts = [slice(first, first + share) for first in range(0, views, share)]
-    if len(parts) < 2:
+    # A thread takes as long to start as a few views.
+    threads = numba.get_num_threads() if views > 16 else 1
+    if threads == 1:
         work(slice(views))
-    else:
-        with ThreadPoolExecutor(len(parts)) as pool:
-            list(pool.map(work, parts))
+        return
+    share = max(-(-views // threads), 16)
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(work, [slice(first, first + share) for first in range(0, views, share)]))
 
 
 def _checked(poses: Poses) -> Float[np.ndarray, "views 3"]:

@@ -268,16 +268,24 @@ def _paint(
 @typing.no_type_check
 def render(
     poses: Poses,
-    scene: Scene,
-    lens: Lens,
-    backdrop: Backdrop,
+    room: tuple,
+    lens: tuple,
+    backdrop: tuple,
     ray: Float[np.ndarray, "width_and_one 2"],
     out: UInt8[np.ndarray, "views height bytes"],
 ) -> None:
     """Paint the view from every pose (m, m, rad) into `out`, without the lock of the interpreter.
 
-    `ray` is the direction (ahead, left) between columns.
+    `room`, `lens` and `backdrop` are a `Scene`, `Lens` and `Backdrop` as plain tuples, and so is the floor in
+    the first: to hand over one that has names takes longer than to paint ten columns. `ray` is the direction
+    (ahead, left) between columns.
     """
+    faces, (red, green, blue, start, light), texels, level_starts, tallest = room
+    scene = Scene(faces, Ground(red, green, blue, start, light), texels, level_starts, tallest)
+    width, height, focal, eye, panoramic = lens
+    lens = Lens(width, height, focal, eye, panoramic)
+    columns, image = backdrop
+    backdrop = Backdrop(columns, image)
     brush = _brush(scene, backdrop.columns.shape[1])
     for i in range(len(poses)):
         _paint(poses[i], scene, lens, backdrop, ray, brush, out[i])
