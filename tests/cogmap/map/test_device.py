@@ -15,7 +15,7 @@ from tests.elsewhere import ELSEWHERE, Elsewhere, is_elsewhere
 
 @pytest.fixture(scope="module")
 def walk() -> Recording:
-    return explore(Arena.load("furnished"), Brownian(), Camera.panoramic(90, 15), views=3000, seed=0)
+    return explore(Arena.load("furnished"), Brownian(), Camera.panoramic(90, 15), views=800, seed=0)
 
 
 @pytest.fixture
@@ -46,8 +46,9 @@ def assert_same(a: Activity, b: Activity) -> None:
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
 
 
+@pytest.mark.near_guard
 @pytest.mark.filterwarnings("ignore::cogmap.UntrustedMapWarning")
-@pytest.mark.parametrize(("charts", "grown"), [(500, 500), (60, 120)])
+@pytest.mark.parametrize(("charts", "grown"), [(100, 100), (60, 120)])
 def test_all_that_is_learnt_lies_on_the_device_and_is_as_on_the_processor(
     walk: Recording, elsewhere: Elsewhere, tmp_path: Path, charts: int, grown: int
 ) -> None:
@@ -57,7 +58,7 @@ def test_all_that_is_learnt_lies_on_the_device_and_is_as_on_the_processor(
     assert all(is_elsewhere(weight) for weight in there.state_dict().values())
     here = CognitiveMap(**options).fit(walk.views, walk.odours)
     assert len(here.state_dict()["charts.centres"]) == grown
-    assert bool(here.metric_reason_) == (grown > charts)
+    assert there.metric_reason_ == here.metric_reason_
     there.save(tmp_path / "map")
     loaded = CognitiveMap.load(tmp_path / "map")
     assert loaded.device == "cpu"
@@ -79,10 +80,10 @@ def test_maps_learn_apart_on_two_devices(walk: Recording, elsewhere: Elsewhere) 
             cmap.partial_fit(walk.views, walk.odours)
         grown[device] = cmap
     here, there = grown.values()
-    away = there.fork().partial_fit(walk.views[:600], walk.odours[:600])
-    twice = here.fork().partial_fit(walk.views[:600], walk.odours[:600])
+    away = there.fork().partial_fit(walk.views[:300], walk.odours[:300])
+    twice = here.fork().partial_fit(walk.views[:300], walk.odours[:300])
     for cmap, other in ((here, away), (there, twice)):
-        cmap.partial_fit(walk.views[600:1000], walk.odours[600:1000]).merge(other)
+        cmap.partial_fit(walk.views[300:500], walk.odours[300:500]).merge(other)
     assert elsewhere.ran > 1000
     for name, weight in weights_of(here).items():
         np.testing.assert_array_equal(weights_of(there)[name].numpy(), weight.numpy())
