@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator
 
 from cogmap.plots.style import GOOD, SOFT, TINY, new_panels, plain_ticks, tidy
 
@@ -33,12 +34,17 @@ def plot_growth(scaling: Mapping[str, Any]) -> Figure:
 
 def _draw(axes: Axes, name: str, found: Mapping[str, Any]) -> None:
     what, by = name.split(" by ")
-    sizes, seconds = np.array(found["sizes"]), np.array(found["seconds"])
+    sizes, spent = np.array(found["sizes"], float), 1e3 * np.array(found["seconds"])
     law = sizes ** found["exponent"]
     # least squares in logarithms: the line goes through the geometric means
-    law *= np.exp(np.mean(np.log(seconds / law)))
+    law *= np.exp(np.mean(np.log(spent / law)))
     axes.loglog(sizes, law, color=SOFT, linewidth=1)
-    axes.loglog(sizes, seconds, "o", color=GOOD, markersize=4)
-    tidy(axes, x=by, y="time (s)", title=f"{what}: {found['exponent']:.2f} ± {found['exponent_error']:.2f}")
+    axes.loglog(sizes, spent, "o", color=GOOD, markersize=4)
+    tidy(axes, x=by, y="time (ms)", title=f"{what}: {found['exponent']:.2f} ± {found['exponent_error']:.2f}")
     plain_ticks(axes.xaxis, sizes.tolist())
     axes.tick_params(axis="x", rotation=45, labelsize=TINY)
+    # at least a factor of ten, or what hardly grows looks steep
+    least, most = min(law.min(), spent.min()), max(law.max(), spent.max())
+    middle, half = np.sqrt(least * most), max(np.sqrt(10), 1.2 * np.sqrt(most / least))
+    axes.set_ylim(middle / half, middle * half)
+    plain_ticks(axes.yaxis, LogLocator(subs=(1, 2, 5) if half < 10 else (1,)))

@@ -3,15 +3,18 @@
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from cogmap.tables import as_markdown
 
 HEAD = """# Performance
 
-`make bench` writes this page. {processor}, {cores} cores; Python {python}, {libraries}. Each subject says how busy
-the machine was with all that ran on it (load averages over a minute, before and after).
+`make bench` writes this page. {processor}, {cores} cores; Python {python}, {libraries}.
+Each subject says how busy the machine was (load over a minute, before and after); its cores are shared.
 
-Where a peer is named, both work in turn in the same run. Speeds are those of the fastest turn, a second; `ratio` is
-ours over the peer's, above 1 where we are faster; the median, lowest and highest are over the turns.
+Where a peer is named, both work in turn in the same run. Speeds, a second, are those of each one's fastest
+turn, and `ratio` is that of these two, above 1 where this code is faster; median, lowest and highest are over
+the turns.
 """
 COMPARED = {
     "peer": "beside",
@@ -89,6 +92,7 @@ def grown(name: str, figures: Mapping[str, Any]) -> dict[str, str]:
         "by": f"{number(sizes[0])} to {number(sizes[-1])} {by}",
         "seconds": f"{number(seconds[0])} to {number(seconds[-1])}",
         "exponent": f"{figures['exponent']:.2f} ± {figures['exponent_error']:.2f}",
+        "between the two largest": f"{np.log(seconds[-1] / seconds[-2]) / np.log(sizes[-1] / sizes[-2]):.2f}",
     }
 
 

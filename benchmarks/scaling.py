@@ -33,7 +33,7 @@ def scaling() -> Figures:
     learnt and perceived by a map of 250 charts, and 4,000 of them by maps of more and more. Cells are
     evaluated at 2,000 places and headings, and explorers step once together. Seconds are those of the core,
     whatever else it does, the least of a few runs. An exponent below 1 means that a part of the cost is
-    always the same; its error is the standard error of the fit.
+    always the same, one above it that memory leaves the caches; its error is the standard error of the fit.
     """
     with one_core(), one_thread(), warnings.catch_warnings():
         # charts of so few views need not agree, which changes no cost
