@@ -31,7 +31,7 @@ def demonstrating() -> Figures:
     paints one view without cached kernels, beside the same with them.
     """
     with tempfile.TemporaryDirectory() as folder:
-        spent("-c", DEMO, "demo", "--views", "1000", "--json", "--out", f"{folder}/small")
+        spent("-c", DEMO, "demo", "--views", "3000", "--json", "--out", f"{folder}/small")
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         seconds, said = spent("-c", DEMO, "demo", "--json", "--out", f"{folder}/demo")
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
