@@ -40,7 +40,12 @@ def _draw(axes: Axes, name: str, found: Mapping[str, Any]) -> None:
     law *= np.exp(np.mean(np.log(spent / law)))
     axes.loglog(sizes, law, color=SOFT, linewidth=1)
     axes.loglog(sizes, spent, "o", color=GOOD, markersize=4)
-    tidy(axes, x=by, y="time (ms)", title=f"{what}: {found['exponent']:.2f} ± {found['exponent_error']:.2f}")
+    tidy(
+        axes,
+        x=by,
+        y="time (ms)",
+        title=f"{what}, exponent {found['exponent']:.2f} ± {found['exponent_error']:.2f}",
+    )
     plain_ticks(axes.xaxis, sizes.tolist())
     axes.tick_params(axis="x", rotation=45, labelsize=TINY)
     # at least a factor of ten, or what hardly grows looks steep

@@ -10,7 +10,7 @@ def test_panel_shows_what_was_measured_and_its_law() -> None:
     figure = plot_growth({"eating_by_leaves": found, "load_before": 1.0})
     axes, *empty = figure.axes
     assert [panel.axison for panel in empty] == [False] * 3
-    assert axes.get_title() == "eating: 0.50 ± 0.00"
+    assert axes.get_title() == "eating, exponent 0.50 ± 0.00"
     assert (axes.get_xlabel(), axes.get_ylabel()) == ("leaves", "time (ms)")
     assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
     for line in axes.lines:
