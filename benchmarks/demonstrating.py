@@ -19,8 +19,8 @@ print(Path("/proc/self/status").read_text().split("VmHWM:")[1].split()[0])
 """
 """The demo, and then its peak of memory in kB (Linux; `getrusage` would tell that of its parent)."""
 PAINT = """
-import arena
-arena.Camera.panoramic().render(arena.Arena.load("furnished"), [[0.0, 0.0, 0.0]])
+import arena, numpy as np
+arena.Camera.panoramic().render(arena.Arena.load("furnished"), np.zeros((1, 3)))
 """
 
 
