@@ -18,7 +18,7 @@ lint: .venv/installed
 	$(BIN)/lint-imports
 
 bench: .venv/peers
-	$(BIN)/python -m benchmarks
+	$(BIN)/python -m benchmarks --report docs/performance.md
 
 verify: .venv/peers
 	$(BIN)/python -m pytest -m full -rA

@@ -1,23 +1,31 @@
-"""`make bench`: every figure of speed, as JSON on stdout and as a table on stderr.
+"""`make bench`: every figure of speed, as JSON on stdout and as a table on stderr, and as a page."""
 
-`python -m benchmarks rendering stepping` measures some subjects only.
-"""
-
+import inspect
 import json
 import os
-import platform
 import sys
+from pathlib import Path
+from typing import Annotated
 
+from cyclopts import App, Parameter
+
+from benchmarks.demonstrating import demonstrating
 from benchmarks.evaluating import evaluating
 from benchmarks.exploring import exploring
+from benchmarks.growth_figure import plot_growth
+from benchmarks.homology import homology
 from benchmarks.learning import learning
+from benchmarks.machine import machine
 from benchmarks.manifold import manifold
+from benchmarks.page import as_page
 from benchmarks.rendering import rendering
+from benchmarks.scaling import scaling
 from benchmarks.stepping import stepping
 from benchmarks.streaming import streaming
 from benchmarks.sweeping import sweeping
 from benchmarks.timing import Figures
 from benchmarks.walking import walking
+from cogmap.atomic import atomic_write
 from cogmap.tables import as_table
 
 SUBJECTS = {
@@ -31,32 +39,62 @@ SUBJECTS = {
         streaming,
         evaluating,
         manifold,
+        homology,
+        demonstrating,
         sweeping,
+        scaling,
     )
 }
 
-
-def machine() -> Figures:
-    """Say what may explain a figure."""
-    return {
-        "cores": os.cpu_count() or 0,
-        "load_1_min": os.getloadavg()[0],
-        "python": platform.python_version(),
-    }
+app = App(name="benchmarks", help_format="plaintext", result_action="return_value")
 
 
-def main(names: list[str]) -> None:
-    """Measure one subject after the other."""
+@app.default
+def bench(
+    *names: str,
+    known: Annotated[Path | None, Parameter("--from")] = None,
+    report: Path | None = None,
+) -> None:
+    """Measure subjects one after the other, or all.
+
+    Parameters
+    ----------
+    names
+        Of the subjects.
+    known
+        JSON of figures that were printed before: they are kept, and only the named subjects measured.
+    report
+        Markdown page to write, beside its figure of the same name.
+    """
     unknown = [name for name in names if name not in SUBJECTS]
     if unknown:
         raise SystemExit(f"no benchmark of {', '.join(unknown)}; choose among {', '.join(SUBJECTS)}")
-    figures: Figures = {"machine_before": machine()}
-    for name in names or SUBJECTS:
-        figures[name] = SUBJECTS[name]()
-    figures["machine_after"] = machine()
+    figures: Figures = json.loads(known.read_text()) if known else {}
+    for name in names or (() if known else SUBJECTS):
+        figures |= {"machine": machine(), name: measured(name)}
+    if report:
+        write_page(figures, report)
     sys.stderr.write(as_table(figures) + "\n")
     sys.stdout.write(json.dumps(figures, indent=2) + "\n")
 
 
+def write_page(figures: Figures, report: Path) -> None:
+    """Write the page, and beside it the figure of how cost grows, if that was measured."""
+    said = {name: inspect.getdoc(subject) or "" for name, subject in SUBJECTS.items()}
+    drawn = report.with_suffix(".png")
+    if "scaling" in figures:
+        with atomic_write(drawn) as fresh:
+            plot_growth(figures["scaling"]).savefig(fresh, format="png")
+    with atomic_write(report) as fresh:
+        fresh.write_text(as_page(figures, said, drawn.name), encoding="utf-8")
+
+
+def measured(name: str) -> Figures:
+    """Measure a subject, and how busy the machine was before and after."""
+    before = os.getloadavg()[0]
+    figures = SUBJECTS[name]()
+    return {**figures, "load_before": before, "load_after": os.getloadavg()[0]}
+
+
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    app()

@@ -1,4 +1,4 @@
-"""Frames per second of the eye, against ViZDoom, a memory copy and pymunk's segment queries."""
+"""How fast the eye paints, against ViZDoom, a memory copy and pymunk's segment queries."""
 
 import importlib.util
 import tempfile
@@ -11,12 +11,12 @@ import numpy as np
 import pymunk
 
 from arena import Arena, Camera
-from benchmarks.timing import ROOM, Figures, missing, one_core, poses, seconds, versus
+from benchmarks.timing import ROOM, Figures, missing, one_core, poses, versus
 
 CAMERAS = {
     "perspective_320x240": Camera.perspective(),
     "panoramic_360x60": Camera.panoramic(),
-    "strip_92x15": Camera.panoramic(92, 15),
+    "strip_90x15": Camera.panoramic(90, 15),
 }
 COPIED = 64 * 10**6
 """Bytes of images that a plain copy moves, more than caches hold."""
@@ -26,18 +26,20 @@ BATCH = 8
 
 
 def rendering() -> Figures:
-    """Measure everything about rendering."""
+    """Paint views of `furnished`, frames per second of one core.
+
+    Frames of 320×240 pixels stand beside ViZDoom's of its basic scenario, whose game steps once a frame, and
+    frames of each camera beside a copy of as many bytes from memory to memory. The room of 400 surfaces is
+    `furnished` with a dozen pillars. Depths are rays per second, beside segment queries of the same room.
+    """
     with one_core():
         figures: Figures = {
-            "surfaces": len(ROOM.surfaces.start),
-            **{name: on_one_core(camera) for name, camera in CAMERAS.items()},
-            "perspective_320x240_over_vizdoom_one_core": over_vizdoom(),
-            "perspective_400_surfaces_cost": cost_of_surfaces(CAMERAS["perspective_320x240"]),
-            "panoramic_400_surfaces_cost": cost_of_surfaces(CAMERAS["panoramic_360x60"]),
-            "strip_400_surfaces_cost": cost_of_surfaces(CAMERAS["strip_92x15"]),
-            "depth_over_pymunk_rays_one_core": over_pymunk(),
+            "perspective_320x240_over_vizdoom": over_vizdoom(),
+            **{name: over_copy(camera) for name, camera in CAMERAS.items()},
+            **{f"{name}_few_surfaces": over_crowded(camera) for name, camera in CAMERAS.items()},
+            "depth": over_pymunk(),
         }
-    return {**figures, "perspective_two_threads_over_one": two_threads()}
+    return {"surfaces": len(ROOM.surfaces.start), **figures, "two_threads": two_threads()}
 
 
 def painting(camera: Camera, room: Arena = ROOM, batch: int = BATCH) -> Callable[[], int]:
@@ -53,8 +55,8 @@ def painting(camera: Camera, room: Arena = ROOM, batch: int = BATCH) -> Callable
     return paint
 
 
-def on_one_core(camera: Camera) -> Figures:
-    """Frames per second, and as a fraction of the rate at which memory copies the same images."""
+def over_copy(camera: Camera) -> Figures:
+    """Frames per second in turn with those that memory copies."""
     views = -(-COPIED // camera.render(ROOM, poses(1)).nbytes)
     images = np.ones((views, camera.height, camera.width, 3), np.uint8)
     into = np.ones_like(images)
@@ -63,13 +65,12 @@ def on_one_core(camera: Camera) -> Figures:
         np.copyto(into, images)
         return views
 
-    found = versus(painting(camera), copy)
-    return {"frames_per_s": found["per_s"], "over_memory_copy": found["ratio"]}
+    return versus(painting(camera), copy, beside="a memory copy")
 
 
-def cost_of_surfaces(camera: Camera) -> float | int | str | Figures:
-    """Time for a view of a room with 400 surfaces over one of the room with 24."""
-    return versus(painting(camera), painting(camera, crowded()))["ratio"]
+def over_crowded(camera: Camera) -> Figures:
+    """Frames per second of the room with 24 surfaces in turn with one with 400."""
+    return versus(painting(camera), painting(camera, crowded()), beside="400 surfaces")
 
 
 def crowded() -> Arena:
@@ -86,15 +87,14 @@ def crowded() -> Arena:
 def two_threads() -> Figures:
     """Frames per second on two threads over those on one, in turn."""
     if numba.config.NUMBA_NUM_THREADS < 2:
-        return {"not_measured": "numba has one thread here"}
+        return {"peer": "one thread", "not_measured": "numba has one thread here"}
     paint = painting(CAMERAS["perspective_320x240"], batch=VIEWS)
 
     def on(threads: int) -> int:
         numba.set_num_threads(threads)
         return paint()
 
-    found = versus(lambda: on(2), lambda: on(1))
-    return {key: found[key] for key in ("ratio", "ratio_median", "ratio_lowest", "ratio_highest")}
+    return versus(lambda: on(2), lambda: on(1), beside="one thread")
 
 
 @contextmanager
@@ -136,21 +136,25 @@ def doom(folder: Path) -> Iterator[Callable[[], int]]:
 def over_vizdoom() -> Figures:
     """Frames per second in turn with ViZDoom's, both on the same core."""
     if importlib.util.find_spec("vizdoom") is None:
-        return missing("vizdoom")
+        return missing("ViZDoom")
     with tempfile.TemporaryDirectory() as folder, doom(Path(folder)) as play:
-        return versus(painting(CAMERAS["perspective_320x240"]), play)
+        return versus(painting(CAMERAS["perspective_320x240"]), play, beside="ViZDoom")
 
 
-def over_pymunk() -> float:
-    """Rays per second of `Camera.depth` over those of pymunk's segment queries."""
+def over_pymunk() -> Figures:
+    """Rays per second of `Camera.depth` in turn with those of pymunk's segment queries."""
     camera, where = CAMERAS["panoramic_360x60"], poses(50)
     space = ROOM.space()
     angles = np.pi - (np.arange(camera.width) + 0.5) / camera.focal_length
 
-    def ask() -> None:
+    def look() -> int:
+        return camera.depth(ROOM, where).size
+
+    def ask() -> int:
         for x, y, heading in where:
             for angle in heading + angles:
                 ends = (x + 10 * np.cos(angle), y + 10 * np.sin(angle))
                 space.segment_query_first((x, y), ends, 0, pymunk.ShapeFilter())
+        return len(where) * len(angles)
 
-    return seconds(ask) / seconds(lambda: camera.depth(ROOM, where))
+    return versus(look, ask, beside="pymunk's segment queries")

@@ -13,13 +13,17 @@ EXPLORERS = 1024
 
 
 def stepping() -> Figures:
-    """Step with a 92×15 strip and smell: one in turn with `Agent.update`, and many in turn with one."""
+    """Step with a 92×15 strip and smell on one core, steps per second.
+
+    One explorer stands beside `Agent.update` of RatInABox, which sees and smells nothing, and 1,024 in one
+    room, by `gymnasium.make_vec`, beside the one.
+    """
     with one_core():
         ours = explorer()
-        together: Figures = {"explorers_over_one": versus(explorers(), ours)}
+        together: Figures = {"explorers": versus(explorers(), ours, beside="one explorer")}
         if importlib.util.find_spec("ratinabox") is None:
-            return {"per_s": rate(ours), **missing("ratinabox"), **together}
-        return {**versus(ours, rat()), **together}
+            return {"explorer": {"per_s": rate(ours), **missing("RatInABox")}, **together}
+        return {"explorer": versus(ours, rat(), beside="RatInABox"), **together}
 
 
 def explorer() -> Callable[[], int]:
@@ -38,18 +42,18 @@ def explorer() -> Callable[[], int]:
     return walk
 
 
-def explorers() -> Callable[[], int]:
+def explorers(count: int = EXPLORERS) -> Callable[[], int]:
     """Give work that steps once with many explorers in one room, who do the same."""
     env = gymnasium.make_vec(
-        "arena/Explorer-v0", num_envs=EXPLORERS, vectorization_mode="vector_entry_point", arena=ROOM
+        "arena/Explorer-v0", num_envs=count, vectorization_mode="vector_entry_point", arena=ROOM
     )
     env.reset(seed=0)
-    runs, spin, spins = _runs(EXPLORERS), np.array([0.0, 1.0], np.float32), np.zeros(EXPLORERS, int)
+    runs, spin, spins = _runs(count), np.array([0.0, 1.0], np.float32), np.zeros(count, int)
 
     def walk() -> int:
         *_, info = env.step(np.where(spins[:, None] > 0, spin, runs))
         spins[:] = np.where(info["touched"], 12, np.maximum(0, spins - 1))
-        return EXPLORERS
+        return count
 
     return walk
 

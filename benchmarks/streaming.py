@@ -44,8 +44,9 @@ def streaming(views: int = VIEWS) -> Figures:
     """Learn what 64 explorers see, piece by piece, in a process that does nothing else.
 
     `seconds` are of walking, painting and learning. `peak_over_before_bytes` is what painting and learning
-    take, batches included; `late_over_early` is the median time of a piece in the last tenth of the stream
-    over that in the first tenth's worth of the same stage.
+    take, batches included, beside `views_bytes`, which all views at once would; `late_over_early` is the
+    median time of a piece in the last tenth of the stream over that in the first tenth's worth of the same
+    stage.
     """
     with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as alone:
         return alone.submit(learn, views).result()
@@ -70,6 +71,7 @@ def learn(views: int) -> Figures:
     tenth = len(spent) // 10
     return {
         "views": int(cmap._network.views_seen),  # noqa: SLF001
+        "views_bytes": views * int(np.prod(Painted(np.zeros((1, 3))).shape)),
         "seconds": time.perf_counter() - started,
         "seconds_walking": walked,
         "peak_bytes": peaks[-1],

@@ -13,7 +13,7 @@ from arena import Arena
 ROUNDS = 15
 ROOM = Arena.load("furnished")
 
-Figures = dict[str, "float | int | str | Figures"]
+Figures = dict[str, "float | int | str | list[float] | Figures"]
 
 
 def rate(work: Callable[[], int]) -> float:
@@ -29,14 +29,18 @@ def seconds(work: Callable[[], object], repeats: int = 3) -> float:
     return min(1 / rate(lambda: (work(), 1)[1]) for _ in range(repeats))
 
 
-def versus(ours: Callable[[], int], peer: Callable[[], int], rounds: int = ROUNDS) -> Figures:
-    """Fastest rates of both, turn by turn, their ratio, and the ratio's median and spread over the turns."""
+def versus(ours: Callable[[], int], peer: Callable[[], int], rounds: int = ROUNDS, *, beside: str) -> Figures:
+    """Fastest rates of both, turn by turn, their ratio, and the ratio's median and spread over the turns.
+
+    `beside` is the name of the peer. Ratios are of speeds: above 1 we are faster.
+    """
     ours()
     peer()
     rates = np.array([(rate(ours), rate(peer)) for _ in range(rounds)])
     low, middle, high = np.percentile(rates[:, 0] / rates[:, 1], [0, 50, 100])
     mine, its = rates.max(axis=0)
     return {
+        "peer": beside,
         "per_s": float(mine),
         "peer_per_s": float(its),
         "ratio": float(mine / its),
@@ -67,4 +71,4 @@ def poses(count: int, room: Arena = ROOM) -> np.ndarray:
 
 def missing(peer: str) -> Figures:
     """Say how to get a peer that is not installed."""
-    return {"not_measured": f"{peer} is not installed; `pip install 'cogmap[peers]'`"}
+    return {"peer": peer, "not_measured": f"{peer} is not installed; `pip install 'cogmap[peers]'`"}

@@ -4,7 +4,7 @@ import numpy as np
 import pymunk
 
 from arena import Arena, Brownian, Chemotaxis, Cyclic, Disc, Motion, Nose, Rotation, Track
-from benchmarks.timing import seconds
+from benchmarks.timing import Figures, seconds, versus
 
 MOTIONS: tuple[Motion, ...] = (Rotation(), Cyclic(), Brownian(), Chemotaxis(), Track())
 VIEWS = 3000
@@ -12,8 +12,11 @@ STEPS = 5000
 ROUNDS = 7
 
 
-def walking() -> dict[str, dict[str, float]]:
-    """Measure views per second of every motion with smell and without sight, and microseconds a step."""
+def walking() -> Figures:
+    """Walk and smell without sight, views per second of every motion.
+
+    A disc takes steps in open space and along a wall, in turn with pymunk's own step of the same room.
+    """
     room = Arena.load("furnished")
     room.odours.concentration(np.zeros((1, 2)))
     return {
@@ -33,26 +36,29 @@ def walked(room: Arena, motion: Motion) -> float:
     return VIEWS / seconds(work, ROUNDS)
 
 
-def stepped(room: Arena) -> dict[str, float]:
+def stepped(room: Arena) -> Figures:
     """Step round a circle in open space, along a wall, and pymunk's own step of the same space, in turn."""
     open_space, wall = Disc().place(room, (0.0, 0.0, 0.0)), Disc().place(room, (-1.82, -1.32, 0.0))
     space, disc = room.space(), pymunk.Body(mass=1.0, moment=float("inf"))
     space.add(disc, pymunk.Circle(disc, Disc().radius))
 
-    def circle() -> None:
+    def circle() -> int:
         for _ in range(STEPS):
             open_space.step(0.2, 1.0, 0.05)
+        return STEPS
 
-    def slide() -> None:
+    def slide() -> int:
         for _ in range(STEPS):
             wall.step(0.001, 0.0, 0.05)
+        return STEPS
 
-    def alone() -> None:
+    def alone() -> int:
         for _ in range(STEPS):
             space.step(0.05)
+        return STEPS
 
     wall.step(0.01, -0.5, 0.5)
     return {
-        f"{name}_us": 1e6 * seconds(work, ROUNDS) / STEPS
-        for name, work in (("open_space", circle), ("along_a_wall", slide), ("pymunk", alone))
+        "open_space": versus(circle, alone, beside="pymunk's own step"),
+        "along_a_wall": versus(slide, alone, beside="pymunk's own step"),
     }

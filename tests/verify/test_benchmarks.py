@@ -14,15 +14,32 @@ pytestmark = pytest.mark.full
 ROOT = Path(__file__).parents[2]
 BARS: dict[str, list[tuple[str, str, Any]]] = {
     "rendering": [
-        ("perspective_320x240_over_vizdoom_one_core/ratio", "≥", 2),
-        ("perspective_two_threads_over_one/ratio", "≥", 1.7),
-        ("perspective_400_surfaces_cost", "≤", 1.7),
-        ("panoramic_400_surfaces_cost", "≤", 3),
-        ("panoramic_360x60/frames_per_s", "≥", 12_000),
+        ("perspective_320x240_over_vizdoom/ratio_median", "≥", 2.5),
+        ("panoramic_360x60/ratio", "≥", 0.07),
+        ("strip_90x15/ratio", "≥", 0.011),
+        ("perspective_320x240_few_surfaces/ratio", "≤", 1.7),
+        ("panoramic_360x60_few_surfaces/ratio", "≤", 3),
+        ("two_threads/ratio", "≥", 1.7),
     ],
-    "exploring": [("one_core/disk/views_per_s", "≥", 2500)],
-    "stepping": [("ratio", "≥", 10)],
-    "learning": [("map/seconds", "≤", 15), ("map/over_slow_features", "≤", 1)],
+    "exploring": [
+        ("one_core/disk/per_s", "≥", 2500),
+        ("all_cores/memory/per_s", "≥", 8000),
+        ("all_cores/memory/ratio", "≥", 0.6),
+    ],
+    "stepping": [("explorer/ratio", "≥", 12), ("explorers/ratio", "≥", 1.6)],
+    "learning": [
+        ("retina/per_s", "≥", 20_000),
+        ("retina/ratio", "≥", 0.15),
+        ("map/seconds", "≤", 7),
+        ("map/ratio", "≥", 2),
+        ("perceive/per_s", "≥", 10_000),
+    ],
+    "homology": [("betti/seconds", "≤", 4), ("paths_equal_scipy", "=", 1)],
+    "demonstrating": [
+        ("demo/seconds", "≤", 40),
+        ("demo/peak_memory_bytes", "≤", 1_500_000_000),
+        ("compilation/seconds", "≤", 8),
+    ],
     "streaming": [
         ("views", "=", 1_000_000),
         ("seconds", "≤", 480),
