@@ -47,7 +47,7 @@ def assert_same(a: Activity, b: Activity) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::cogmap.UntrustedMapWarning")
-@pytest.mark.parametrize(("charts", "grown"), [(500, 500), (60, 120)])
+@pytest.mark.parametrize(("charts", "grown"), [(600, 600), (60, 120)])
 def test_all_that_is_learnt_lies_on_the_device_and_is_as_on_the_processor(
     walk: Recording, elsewhere: Elsewhere, tmp_path: Path, charts: int, grown: int
 ) -> None:
