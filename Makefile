@@ -8,6 +8,8 @@ BIN := .venv/bin
 demo: .venv/installed
 	$(BIN)/cogmap demo --out $(OUT)
 
+# Many processes import the same: the first to do so leaves them its bytecode, whatever the environment says.
+test: export PYTHONDONTWRITEBYTECODE =
 test: .venv/installed
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder
 

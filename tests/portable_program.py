@@ -37,7 +37,7 @@ def run(folder: Path, views: int, charts: int) -> dict[str, str]:
     cmap.save(folder / "map")
 
     vocabulary.EXAMPLES = 5000  # k-means of as many as usual would take most of the time
-    plan = Plan.create(experiment="rotation", views=200, seeds=[0], grid={"arena": ["pillar", "open_field"]})
+    plan = Plan.create(experiment="rotation", views=200, seeds=[0], grid={"arena": ["pillar"]})
     sweep(plan, folder / "swept", workers=1)
     return {
         "arithmetic": arithmetic(),

@@ -55,7 +55,7 @@ class Known(NamedTuple):
 
 @pytest.fixture(scope="module")
 def pillar() -> Known:
-    walk = explore(Arena.load("pillar"), Brownian(), Camera.panoramic(), views=VIEWS, seed=0)
+    walk = explore(Arena.load("pillar"), Brownian(), Camera.panoramic(90, 15), views=VIEWS, seed=0)
     cmap = CognitiveMap(charts=3000, seed=0).fit(walk.views, walk.odours)
     activity = cmap.perceive(walk.views)
     return Known(activity, homologies(cmap.encode(walk.views), activity, landmarks=LANDMARKS))

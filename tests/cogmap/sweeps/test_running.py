@@ -4,8 +4,6 @@ import json
 import os
 import resource
 import signal
-import subprocess
-import sys
 import time
 from collections import Counter
 from collections.abc import Iterator
@@ -16,8 +14,14 @@ import numpy as np
 import psutil
 import pytest
 
+from tests.forked import Forked, prepare
+
 ROOT = Path(__file__).parents[3]
-LABORATORY = Path(__file__).with_name("laboratory.py")
+NEEDED = (
+    "tests.cogmap.sweeps.laboratory", "cogmap.commands.results", "distributed.cli.dask_scheduler",
+    "distributed.cli.dask_worker",
+)  # fmt: skip
+THREADS = {"OMP_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 SWEEP = """
 experiment = "cheap"
 seeds = [0, 1, 2]
@@ -37,20 +41,17 @@ class Laboratory:
         self.diary.touch()
         self.environment = {
             **os.environ, "DIARY": str(self.diary), "SECONDS": str(seconds), "PYTHONPATH": str(ROOT),
-            "OMP_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1",
+            **THREADS,
         }  # fmt: skip
 
-    def start(self, *words: object) -> subprocess.Popen[str]:
-        return subprocess.Popen(
-            [sys.executable, LABORATORY, "sweep", self.file, "--out", self.out, "--json", *map(str, words)],
-            env=self.environment, start_new_session=True, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        )  # fmt: skip
+    def start(self, *words: object, longest_file: int = resource.RLIM_INFINITY) -> Forked:
+        command = ["sweep", self.file, "--out", self.out, "--json", *words]
+        return Forked("cogmap.cli:main", command, self.environment, self.file.with_name("said"), longest_file)
 
-    def run(self, *words: object) -> tuple[int, str, str]:
-        process = self.start(*words)
+    def run(self, *words: object, longest_file: int = resource.RLIM_INFINITY) -> tuple[int, str, str]:
+        process = self.start(*words, longest_file=longest_file)
         out, err = process.communicate(timeout=500)
-        return process.returncode, out, err
+        return process.poll(), out, err
 
     def finished(self) -> set[str]:
         """What the diary calls the points that are put down."""
@@ -71,6 +72,11 @@ class Laboratory:
 def laboratory(folder: Path, text: str = SWEEP, seconds: float = 0.1) -> Laboratory:
     folder.mkdir()
     return Laboratory(folder, text, seconds)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _prepared() -> None:
+    prepare(NEEDED, PYTHONPATH=str(ROOT), **THREADS)
 
 
 @pytest.fixture(scope="module")
@@ -118,37 +124,27 @@ def test_killed_at_any_moment_the_same_command_goes_on(
 
 
 @contextmanager
-def cluster(lab: Laboratory, workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
-    file = lab.file.with_name("scheduler.json")
-    quiet = {
-        "env": lab.environment,
-        "stdout": subprocess.DEVNULL,
-        "stderr": subprocess.DEVNULL,
-        "cwd": lab.file.parent,
-    }
+def cluster(lab: Laboratory, workers: int) -> Iterator[tuple[str, list[Forked]]]:
+    folder = lab.file.parent
+    file = folder / "scheduler.json"
     options = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", file]
-    processes = [subprocess.Popen([sys.executable, "-m", "dask", "scheduler", *options], **quiet)]
+    processes = [
+        Forked("distributed.cli.dask_scheduler:main", options, lab.environment, folder / "scheduler")
+    ]
     try:
         while not (file.exists() and file.stat().st_size) and processes[0].poll() is None:
             time.sleep(0.1)
         address = json.loads(file.read_text(encoding="utf-8"))["address"]
-        worker = [
-            sys.executable,
-            "-m",
-            "dask",
-            "worker",
-            address,
-            "--nthreads",
-            "1",
-            "--no-nanny",
-            "--no-dashboard",
+        words = [address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", folder]
+        processes += [
+            Forked("distributed.cli.dask_worker:main", words, lab.environment, folder / f"worker{number}")
+            for number in range(workers)
         ]
-        processes += [subprocess.Popen(worker, **quiet) for _ in range(workers)]
         yield address, processes
     finally:
         for process in processes:
             process.kill()
-            process.wait()
+            process.communicate()
 
 
 def test_two_dask_workers_give_the_same_table(undisturbed: Laboratory, tmp_path: Path) -> None:
@@ -170,7 +166,7 @@ def test_a_scheduler_that_dies_is_one_sentence_and_the_rest_is_done_here(tmp_pat
             time.sleep(0.05)
         processes[0].kill()
         _, err = process.communicate(timeout=120)
-    assert process.returncode == 2, err
+    assert process.poll() == 2, err
     assert err.startswith(f"cogmap: the Dask scheduler at {address} was lost; all points that are finished")
     assert len(err.splitlines()) == 1
     kept = lab.finished()
@@ -183,12 +179,7 @@ def test_a_scheduler_that_dies_is_one_sentence_and_the_rest_is_done_here(tmp_pat
 def test_a_disk_that_takes_no_more_is_one_sentence(tmp_path: Path) -> None:
     text = 'experiment = "cheap"\nseeds = [0]\n[grid]\n"nose.noise" = [0]\n"map.charts" = [1, 2]\n'
     lab = laboratory(tmp_path / "full", text, seconds=0.0)
-    usual = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, usual[1]))
-    try:
-        status, out, err = lab.run("--workers", 1)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, usual)
+    status, out, err = lab.run("--workers", 1, longest_file=1000)
     assert status == 2
     assert not out
     assert "all points that are finished are kept" in err
@@ -207,7 +198,7 @@ def test_a_worker_that_is_killed_is_one_sentence(tmp_path: Path) -> None:
     ]
     os.kill(workers[-1], signal.SIGKILL)
     _, err = process.communicate(timeout=60)
-    assert process.returncode == 2
+    assert process.poll() == 2
     assert "was killed, perhaps for lack of memory" in err
 
 

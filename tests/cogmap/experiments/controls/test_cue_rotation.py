@@ -32,7 +32,7 @@ def test_maps_turn_counter_clockwise() -> None:
 
 
 def test_sight_follows_the_walls_and_smell_stays() -> None:
-    metrics = run_experiment("cue_rotation", views=3000).metrics
+    metrics = run_experiment("cue_rotation", views=3000, camera=Camera.panoramic(90, 15)).metrics
     assert metrics["place_follows_walls_light"] > 0.95
     assert metrics["place_follows_walls_dark"] < 0.05
     assert metrics["heading_follows_walls"] > 0.95

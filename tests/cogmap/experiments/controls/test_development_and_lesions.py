@@ -2,6 +2,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from arena import Camera
 from cogmap.experiments.controls.development_and_lesions import _agreement, _mature
 from cogmap.experiments.registry import run_experiment
 from cogmap.experiments.result import Result
@@ -11,7 +12,7 @@ VIEWS = 1600
 
 @pytest.fixture(scope="module")
 def result() -> Result:
-    return run_experiment("development", views=VIEWS)
+    return run_experiment("development", views=VIEWS, camera=Camera.panoramic(90, 15))
 
 
 def test_cells_grow_with_experience(result: Result) -> None:

@@ -2,13 +2,14 @@ from typing import Any
 
 import pytest
 
+from arena import Camera
 from cogmap.experiments.registry import run_experiment
 from cogmap.experiments.result import Result
 
 
 @pytest.fixture(scope="module")
 def result() -> Result:
-    return run_experiment("fusion", views=5000)
+    return run_experiment("fusion", views=5000, camera=Camera.panoramic(90, 15))
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,7 @@
 import numpy as np
 import pandas as pd
 
-from arena import Arena
+from arena import Arena, Camera
 from cogmap.cells import fit_heading_frame, heading_errors
 from cogmap.experiments.paper.goals import goal_grid, ring_distances, spread_orientation
 from cogmap.experiments.registry import run_experiment
@@ -37,7 +37,7 @@ def test_goals_lie_where_the_body_can_go() -> None:
 
 
 def test_rings_at_goals_are_place_cells() -> None:
-    result = run_experiment("goals", views=3000)
+    result = run_experiment("goals", views=3000, camera=Camera.panoramic(90, 15))
     metrics = result.metrics
     assert metrics["goals"] == 12
     assert metrics["ring_betti"] == [1, 1]
