@@ -33,7 +33,7 @@ def test_page_and_figure_are_written_from_a_file_without_measuring(
 def test_named_subject_is_measured_beside_what_is_known(
     known: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(benchmarks, "SUBJECTS", {"walking": lambda: {"views": 3}})
+    monkeypatch.setattr(benchmarks, "subject", lambda _: lambda: {"views": 3})
     benchmarks.app(["walking", "--from", str(known)])
     found = json.loads(capsys.readouterr().out)
     assert list(found) == ["machine", "scaling", "walking"]
