@@ -17,6 +17,8 @@ def main() -> None:
             if not set(sys.argv[1:2]) - set(app.help_flags):
                 list(app.subapps)  # the help of all is read out of each
             app(sys.argv[1:], exit_on_error=False, print_error=False)
+    except SystemExit:  # all is said: what bad input raises need not be asked, which loads torch
+        raise
     except _refusals() as error:
         _say(" ".join(str(error).split()))
         raise SystemExit(2) from None

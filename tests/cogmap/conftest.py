@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
 
@@ -32,7 +32,11 @@ def cmap(walk: Recording, grow: Callable[[Recording], CognitiveMap]) -> Cognitiv
     return grow(walk)
 
 
-@pytest.fixture
-def few_examples(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Learn visual words from fewer descriptors: k-means would take most of a small experiment."""
-    monkeypatch.setattr(vocabulary, "EXAMPLES", 5000)
+@pytest.fixture(scope="module")
+def few_words() -> Iterator[None]:
+    """Look at small views, and learn words from few of their descriptors: most of a small experiment else."""
+    look = Camera.perspective
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(vocabulary, "EXAMPLES", 2000)
+        patch.setattr(Camera, "perspective", lambda w=160, h=120, **rest: look(w, h, **rest))
+        yield

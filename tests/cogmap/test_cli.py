@@ -226,7 +226,7 @@ def test_what_does_not_fit_is_told_in_one_line(run, folder: Path, tmp_path: Path
     assert np.asarray(Recording.open(wide).views[:]).shape == (20, 60, 360, 3)
 
 
-@pytest.mark.usefixtures("few_examples")
+@pytest.mark.usefixtures("few_words")
 def test_an_experiment_leaves_its_metrics(run, tmp_path: Path) -> None:
     out = tmp_path / "spin"
     status, said, _ = run("experiment", "rotation", "--views", 200, "--seed", 1, "--out", out, "--json")

@@ -25,6 +25,12 @@ SMALL: dict[str, dict[str, Any]] = {
 }
 
 
+BEGIN = """
+%reset -f
+%cd -q {}
+from cogmap.features import vocabulary
+vocabulary.EXAMPLES = 2000
+"""
 GUARDS = """
 import gc
 gc.collect()
@@ -68,8 +74,8 @@ def test_it_runs(name: str, tmp_path: Path, kernel: AsyncKernelManager) -> None:
         )
         assert count == 1
     drawn = [figures(cell) for cell in notebook.cells]
-    begin = f"%reset -f\n%cd -q {tmp_path}"
-    notebook.cells = [nbformat.v4.new_code_cell(begin), *notebook.cells, nbformat.v4.new_code_cell(GUARDS)]
+    begin = nbformat.v4.new_code_cell(BEGIN.format(tmp_path))
+    notebook.cells = [begin, *notebook.cells, nbformat.v4.new_code_cell(GUARDS)]
     client = NotebookClient(notebook, timeout=300, km=kernel)
     client.execute()
     # It leaves the channels to a kernel that is not its own open, to be complained of in a later test.

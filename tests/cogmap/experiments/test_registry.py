@@ -14,16 +14,16 @@ from cogmap.experiments.result import Result
 from cogmap.tables import as_markdown
 
 VIEWS = {
-    "rotation": 300,
-    "cyclic": 300,
-    "brownian": 300,
+    "rotation": 200,
+    "cyclic": 200,
+    "brownian": 200,
     "similarity": 200,
-    "localisation": 300,
-    "roadmap": 1500,
-    "distinguishability": 300,
+    "localisation": 200,
+    "roadmap": 800,
+    "distinguishability": 200,
     "fusion": 300,
     "odour_ablation": 200,
-    "goals": 600,
+    "goals": 1900,
 }
 KEYS = {
     "rotation": {"test_correlation", "median_error_deg", "betti", "dimension", "geodesic_rank_correlation"},
@@ -68,7 +68,7 @@ def test_no_two_have_the_same_name() -> None:
         experiment(room="furnished", views=200)(fusion)
 
 
-@pytest.mark.usefixtures("few_examples")
+@pytest.mark.usefixtures("few_words")
 @pytest.mark.parametrize("name", VIEWS)
 def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> None:
     out = tmp_path / name
@@ -90,7 +90,7 @@ def test_the_white_room_is_confused_and_the_blue_wall_is_not() -> None:
     assert metrics["confusion_blue_wall"] < 0.02
 
 
-@pytest.mark.usefixtures("few_examples")
+@pytest.mark.usefixtures("few_words")
 def test_the_same_seed_gives_the_same_tables() -> None:
     room = Arena.load("open_field")
     one, same = (run_experiment("rotation", views=200, seed=2, room=room) for _ in range(2))
