@@ -11,11 +11,14 @@ import pytest
 from tests.guards import described, too_near
 
 LONGEST = (
-    "test_running", "test_notebooks", "test_portable", "test_registry", "test_readme", "test_directionality",
-    "test_topology_of_maps", "test_development_and_lesions", "test_cognitive_map", "test_cli", "test_gallery",
-    "test_metric_map", "test_exploration", "test_merging", "test_fusion",
+    "test_running", "test_merging", "test_metric_map", "test_homology", "test_isomap", "test_notebooks",
+    "test_portable", "test_registry", "test_readme", "test_directionality", "test_topology_of_maps",
+    "test_development_and_lesions", "test_cognitive_map", "test_cli", "test_exploration", "test_fusion",
 )  # fmt: skip
-"""Files that are begun first, so that no worker waits for another at the end."""
+"""Files that are begun first, the longest of them, so that no worker waits for another at the end.
+
+But for those before the notebooks, which need no kernels: these are compiled by one worker meanwhile.
+"""
 GROWN = pytest.StashKey[set[str]]()
 
 

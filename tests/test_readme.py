@@ -1,4 +1,4 @@
-"""What the README prints is run, at its own size."""
+"""What the README prints is run, at its own size; words alone are learnt from fewer descriptors."""
 
 import re
 from pathlib import Path
@@ -7,6 +7,7 @@ import pytest
 
 from cogmap import Plan
 from cogmap.commands import app
+from cogmap.features import vocabulary
 from cogmap.sweeps.points import points_of
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
@@ -16,6 +17,7 @@ def test_the_python_examples_run(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(vocabulary, "EXAMPLES", 5000)
     for example in re.findall(r"```python\n(.*?)```", README, re.DOTALL):
         exec(compile(example, "README.md", "exec"), {})  # noqa: S102
     scores, numbers, coordinates, swept = capsys.readouterr().out.splitlines()

@@ -13,6 +13,7 @@ def homologies(
     activity: Activity,
     *,
     landmarks: tuple[int, int] = (400, 150),
+    draws: int = 3,
     seed: int = 0,
 ) -> dict[str, Betti]:
     """Betti numbers of the view manifold, the fused map and both populations.
@@ -33,6 +34,6 @@ def homologies(
     }
     clouds = {name: cloud for name, cloud in clouds.items() if np.isfinite(cloud).all()}
     found = Parallel(n_jobs=2)(
-        delayed(betti)(cloud, landmarks=landmarks, seed=seed) for cloud in clouds.values()
+        delayed(betti)(cloud, landmarks=landmarks, draws=draws, seed=seed) for cloud in clouds.values()
     )
     return dict(zip(clouds, found, strict=True))

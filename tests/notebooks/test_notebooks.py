@@ -28,9 +28,12 @@ SMALL: dict[str, dict[str, Any]] = {
 BEGIN = """
 %reset -f
 %cd -q {}
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from cogmap.features import vocabulary
+ConstrainedLayoutEngine.execute = lambda *_: None
 vocabulary.EXAMPLES = 2000
 """
+"""Before the first cell: words are learnt from few descriptors, and nobody looks how figures are laid out."""
 GUARDS = """
 import gc
 gc.collect()

@@ -35,44 +35,57 @@ def assert_same(a: Activity, b: Activity) -> None:
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
 
 
-def test_poses_cannot_reach_learning(walk: Recording, grow: Grow, cmap: CognitiveMap) -> None:
+@pytest.fixture(scope="module")
+def stroll(camera: Camera) -> Recording:
+    """Too short for a map to be trusted, and long enough to tell one map from another."""
+    return explore(Arena.load("furnished"), Brownian(), camera, views=1500, seed=0)
+
+
+def learn(recording: Recording, *, seed: int = 0) -> CognitiveMap:
+    return CognitiveMap(charts=150, components=20, seed=seed).fit(recording.views, recording.odours)
+
+
+@pytest.fixture(scope="module")
+def learnt(stroll: Recording) -> CognitiveMap:
+    return learn(stroll)
+
+
+def test_poses_cannot_reach_learning(stroll: Recording, learnt: CognitiveMap) -> None:
     rng = np.random.default_rng(7)
-    lied_to = replace(walk, poses=rng.permutation(walk.poses), times=walk.times[::-1].copy())
-    assert walk.without_truth().poses is None
-    assert same(cmap, grow(walk.without_truth()))
-    assert same(cmap, grow(lied_to))
-    for learn in (CognitiveMap.fit, CognitiveMap.partial_fit, CognitiveMap.perceive):
-        assert set(inspect.signature(learn).parameters) <= {"self", "views", "odours", "progress", "jump"}
+    lied_to = replace(stroll, poses=rng.permutation(stroll.poses), times=stroll.times[::-1].copy())
+    assert stroll.without_truth().poses is None
+    assert same(learnt, learn(stroll.without_truth()))
+    assert same(learnt, learn(lied_to))
+    for taught in (CognitiveMap.fit, CognitiveMap.partial_fit, CognitiveMap.perceive):
+        assert set(inspect.signature(taught).parameters) <= {"self", "views", "odours", "progress", "jump"}
 
 
-def test_one_thread_or_two_give_the_same_map(
-    walk: Recording, camera: Camera, grow: Grow, cmap: CognitiveMap
-) -> None:
+def test_one_thread_or_two_give_the_same_map(stroll: Recording, camera: Camera, learnt: CognitiveMap) -> None:
     threads, cast = torch.get_num_threads(), numba.get_num_threads()
     grown = []
     for count in (1, 2):
         torch.set_num_threads(count)
         numba.set_num_threads(min(count, numba.config.NUMBA_NUM_THREADS))
-        seen = explore(Arena.load("furnished"), Brownian(), camera, views=len(walk), seed=0)
-        np.testing.assert_array_equal(seen.views, walk.views)
-        grown.append(grow(seen))
+        seen = explore(Arena.load("furnished"), Brownian(), camera, views=len(stroll), seed=0)
+        np.testing.assert_array_equal(seen.views, stroll.views)
+        grown.append(learn(seen))
         assert torch.get_num_threads() == count
     torch.set_num_threads(threads)
     numba.set_num_threads(cast)
     assert same(*grown)
-    assert same(grown[0], cmap)
+    assert same(grown[0], learnt)
 
 
-def test_another_seed_gives_another_map(walk: Recording, grow: Grow, cmap: CognitiveMap) -> None:
-    assert not same(cmap, grow(walk, seed=1))
+def test_another_seed_gives_another_map(stroll: Recording, learnt: CognitiveMap) -> None:
+    assert not same(learnt, learn(stroll, seed=1))
 
 
 def test_fit_is_epochs_of_partial_fit(
-    walk: Recording, cmap: CognitiveMap, monkeypatch: pytest.MonkeyPatch
+    stroll: Recording, learnt: CognitiveMap, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # what is made of a view is rounded by the company it is seen in, so both learn from the same
-    whole = torch.cat([strip for _, strip in cmap._strips(walk.views)])
-    index = {view.tobytes(): row for row, view in enumerate(walk.views)}
+    whole = torch.cat([strip for _, strip in learnt._strips(stroll.views)])
+    index = {view.tobytes(): row for row, view in enumerate(stroll.views)}
     made: dict[Callable[..., Any], Any] = {}
 
     def which(_: CognitiveMap, views: np.ndarray) -> Iterator[tuple[slice, torch.Tensor]]:
@@ -89,13 +102,13 @@ def test_fit_is_epochs_of_partial_fit(
 
     monkeypatch.setattr(CognitiveMap, "_strips", which)
     monkeypatch.setattr(Network, "see", see)
-    streamed = CognitiveMap(charts=cmap.charts, components=cmap.components, epoch=len(walk), seed=0)
+    streamed = CognitiveMap(charts=learnt.charts, components=learnt.components, epoch=len(stroll), seed=0)
     order = np.random.default_rng(0)
     for stage in STAGES:
         for _ in range(stage.epochs):
-            rows = np.arange(len(walk)) if stage.in_order else order.permutation(len(walk))
-            streamed.partial_fit(walk.views[rows], walk.odours[rows])
-    assert same(streamed, cmap)
+            rows = np.arange(len(stroll)) if stage.in_order else order.permutation(len(stroll))
+            streamed.partial_fit(stroll.views[rows], stroll.odours[rows])
+    assert same(streamed, learnt)
 
 
 def test_fit_asks_the_stages_for_epochs_and_order(walk: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
