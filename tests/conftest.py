@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
-from joblib import cpu_count
 
 from tests.guards import described, too_near
 
@@ -21,11 +20,6 @@ LONGEST = (
 But for those before the notebooks, which need no kernels: these are compiled by one worker meanwhile.
 """
 GROWN = pytest.StashKey[set[str]]()
-
-
-def pytest_xdist_auto_num_workers() -> int:
-    """Use one worker more than there are cores: some tests wait, for processes and for disks."""
-    return cpu_count() + 1
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -36,7 +36,9 @@ def run(folder: Path, views: int, charts: int) -> dict[str, str]:
     cmap = CognitiveMap(charts=charts, components=20, place_cells=40).fit(walk.views, walk.odours)
     cmap.save(folder / "map")
 
-    vocabulary.EXAMPLES = 2000  # k-means of as many as usual would take most of the time
+    # SIFT in views and k-means of descriptors as many as usual would take most of the time
+    vocabulary.EXAMPLES, look = 2000, Camera.perspective
+    Camera.perspective = lambda: look(160, 120)
     plan = Plan.create(experiment="rotation", views=200, seeds=[0], grid={"arena": ["pillar"]})
     sweep(plan, folder / "swept", workers=1)
     return {

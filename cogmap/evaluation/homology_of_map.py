@@ -2,7 +2,6 @@
 
 import numpy as np
 from jaxtyping import Float
-from joblib import Parallel, delayed
 
 from cogmap.map.activity import Activity
 from cogmap.shape.homology import Betti, betti
@@ -20,7 +19,7 @@ def homologies(
 
     The view manifold is the codes, the fused map (recalled log odour, cos φ, sin φ), a population the square
     roots of its rates, whose Poisson noise is the same at every rate. What a map without a compass does not
-    know, because it is NaN, is left out. Computed side by side in two processes.
+    know, because it is NaN, is left out.
 
     References
     ----------
@@ -33,7 +32,4 @@ def homologies(
         "heading": np.sqrt(activity.heading),
     }
     clouds = {name: cloud for name, cloud in clouds.items() if np.isfinite(cloud).all()}
-    found = Parallel(n_jobs=2)(
-        delayed(betti)(cloud, landmarks=landmarks, draws=draws, seed=seed) for cloud in clouds.values()
-    )
-    return dict(zip(clouds, found, strict=True))
+    return {name: betti(cloud, landmarks=landmarks, draws=draws, seed=seed) for name, cloud in clouds.items()}
