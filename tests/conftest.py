@@ -11,7 +11,7 @@ import pytest
 from tests.guards import described, too_near
 
 LONGEST = (
-    "test_running", "test_merging", "test_metric_map", "test_homology", "test_isomap", "test_notebooks",
+    "test_running", "test_merging", "atlas/test_metric_map", "shape/test_homology", "test_isomap", "test_notebooks",
     "test_portable", "test_registry", "test_readme", "test_directionality", "test_topology_of_maps",
     "test_development_and_lesions", "test_cognitive_map", "test_cli", "test_exploration", "test_fusion",
 )  # fmt: skip
@@ -25,7 +25,11 @@ GROWN = pytest.StashKey[set[str]]()
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the longest files."""
     ranks = {name: rank for rank, name in enumerate(LONGEST)}
-    items.sort(key=lambda item: ranks.get(item.path.stem, len(ranks)))
+
+    def rank(item: pytest.Item) -> int:
+        return min((ranks[name] for name in LONGEST if item.path.match(f"{name}.py")), default=len(ranks))
+
+    items.sort(key=rank)
 
 
 @pytest.fixture(scope="session", autouse=True)
