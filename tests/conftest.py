@@ -11,9 +11,10 @@ import pytest
 from tests.guards import described, too_near
 
 LONGEST = (
-    "test_running", "test_merging", "atlas/test_metric_map", "shape/test_homology", "test_isomap", "test_notebooks",
-    "test_portable", "test_registry", "test_readme", "test_directionality", "test_topology_of_maps",
-    "test_development_and_lesions", "test_cognitive_map", "test_cli", "test_exploration", "test_fusion",
+    "test_running", "test_merging", "atlas/test_metric_map", "shape/test_homology", "test_isomap",
+    "test_notebooks", "test_portable", "test_registry", "test_readme", "test_directionality",
+    "test_topology_of_maps", "test_development_and_lesions", "test_cognitive_map", "test_cli",
+    "test_exploration", "test_fusion",
 )  # fmt: skip
 """Files that are begun first, the longest of them, so that no worker waits for another at the end.
 
