@@ -38,6 +38,20 @@ def test_nothing_heavy_is_imported_until_it_is_used(loaded: dict[str, set[str]])
     assert loaded["cogmap.CognitiveMap(seed=1)"] == {"torch"}
 
 
+def test_help_of_what_runs_commands_waits_for_nothing_heavy() -> None:
+    script = f"""
+import atexit, sys
+atexit.register(lambda: sys.stderr.write(" ".join(sys.modules.keys() & {set(HEAVY.split())})))
+sys.argv = ["cogmap", "portable", "--help"]
+from cogmap.cli import main
+main()
+"""
+    command = [sys.executable, "-c", script]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert "cogmap portable" in done.stdout
+    assert not done.stderr
+
+
 def test_what_is_used_is_imported(loaded: dict[str, set[str]]) -> None:
     assert "gudhi" in loaded["cogmap.betti"]
     assert "matplotlib" not in loaded["cogmap.betti"]

@@ -17,10 +17,11 @@ def test_ideal_populations_have_the_shape_of_what_they_code() -> None:
         position=xy,
     )
     codes = np.column_stack([xy, 0.8 * np.cos(heading), 0.8 * np.sin(heading)])
-    found = homologies(codes, activity, landmarks=(150, 80))
+    found = homologies(codes, activity, landmarks=(150, 80), draws=2)
     assert {name: bars.numbers for name, bars in found.items()} == {
         "view_manifold": (1, 1, 0),
         "fused": (1, 1, 0),
         "place": (1, 0, 0),
         "heading": (1, 1, 0),
     }
+    assert {bars.draws for bars in found.values()} == {2}
