@@ -107,7 +107,9 @@ class Circuit(nn.Module):
         count, components = self.charts.centres.shape
         self.olfaction = Olfaction(count, odorants)
         self.readout = Readout(count, components, odorants)
-        self.place = PlaceCells(cells, count, odorants)
+        # place cells that have learnt before there were charts keep what they prefer
+        self.place.branches = torch.ones(count, cells, dtype=torch.bool)
+        self.place.afferents = Afferents(count, cells)
         # preferred directions stay as drawn: a map that was saved and loaded has no generator to go on with
         self.heading.afferents = Afferents(count, len(self.heading.preferred))
         self.agreement.fill_(torch.nan)

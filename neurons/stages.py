@@ -126,6 +126,18 @@ class RecallStage(Stage[Recalled]):
 
 
 @dataclass(frozen=True)
+class SmellStage(StripStage):
+    """Place cells share out the smells themselves: an animal whose eyes are still closed."""
+
+    name = "smell"
+    epochs: int = 2
+
+    def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:
+        """Let the place cells compete."""
+        circuit.place.compete(batch.log_odours, window=batch.window)
+
+
+@dataclass(frozen=True)
 class CodeStage(StripStage):
     """Principal components of the retina's strips."""
 
@@ -219,6 +231,18 @@ class CellStage(RecallStage):
 
 
 @dataclass(frozen=True)
+class HeadingStage(RecallStage):
+    """Head-direction cells share out the headings, beside place cells that have learnt before."""
+
+    name = "heading_cells"
+    epochs: int = CellStage.epochs
+
+    def learn(self, circuit: Circuit, batch: Batch[Recalled]) -> None:
+        """Let the head-direction cells compete."""
+        circuit.heading.compete(batch.seen.heading, window=batch.window)
+
+
+@dataclass(frozen=True)
 class MetricMapStage(RecallStage):
     """Where places are, and by how much the compass is off there, from the order of views."""
 
@@ -264,3 +288,9 @@ STAGES: tuple[Stage[Any], ...] = (
     AfferentStage(),
 )
 """Stages in order; each stands on what those before it have fixed."""
+
+SMELL_FIRST: tuple[Stage[Any], ...] = (
+    SmellStage(),
+    *(HeadingStage() if isinstance(stage, CellStage) else stage for stage in STAGES),
+)
+"""The same, but place cells learn before there is anything to see."""

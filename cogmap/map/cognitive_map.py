@@ -29,7 +29,7 @@ from neurons.errors import NeuronsError
 from neurons.layers.retina import Retina
 from neurons.merging import forked, merge
 from neurons.network import Network
-from neurons.stages import StripStage, chosen, joined
+from neurons.stages import SMELL_FIRST, STAGES, StripStage, chosen, joined
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same map."""
@@ -55,6 +55,9 @@ class CognitiveMap:
         adds none.
     place_cells, heading_cells
         Sizes of the two populations.
+    smell_first
+        Whether place cells learn from what is smelt before anything is seen; else later, from what sight
+        recalls of it.
     epoch
         Views per epoch when learning from a stream with `partial_fit`; `fit` sets it to the views it is
         given.
@@ -90,6 +93,7 @@ class CognitiveMap:
     most_charts: int | None = None
     place_cells: int = 150
     heading_cells: int = 60
+    smell_first: bool = False
     epoch: int = 17_000
     seed: int = 0
     device: str = "cpu"
@@ -336,6 +340,7 @@ class CognitiveMap:
                 place_cells=checked_count("place_cells", self.place_cells),
                 heading_cells=checked_count("heading_cells", self.heading_cells),
                 epoch=epoch,
+                stages=SMELL_FIRST if self.smell_first else STAGES,
                 # drawn on the processor: the same initial weights on every device
                 generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
             ).to(self._device)

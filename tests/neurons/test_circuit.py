@@ -61,10 +61,13 @@ def test_added_charts_keep_what_does_not_stand_on_charts(most: int, charts: int)
     grown.charts.centres = torch.randn(40, 8, generator=torch.Generator().manual_seed(1))
     for name in ("olfaction.gram", "readout.phases", "place.centres", "heading.afferents.activity"):
         grown.get_buffer(name).fill_(1.0)
+    grown.place.branches.fill_(False)  # noqa: FBT003
     grown.agreement.fill_(1.0)
     grown.add_charts()
     assert len(grown.charts) == charts
-    for name in ("code.weight", "heading.preferred", "place.centres", "metric_map.spread"):
+    assert (grown.place.centres == 1).all()
+    assert grown.place.branches.all()
+    for name in ("code.weight", "heading.preferred", "place.covariances", "metric_map.spread"):
         assert torch.equal(grown.get_buffer(name), fresh.get_buffer(name)), name
     for layer in (grown.olfaction.gram, grown.readout.phases, grown.place.afferents.activity):
         assert len(layer) == charts

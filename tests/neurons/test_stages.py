@@ -11,6 +11,7 @@ from neurons.errors import NeuronsError
 from neurons.merging import forked, merge
 from neurons.network import Network
 from neurons.stages import (
+    SMELL_FIRST,
     STAGES,
     AfferentStage,
     Batch,
@@ -175,9 +176,23 @@ def test_its_layers_are_made_again_when_charts_are_added() -> None:
 def test_names_and_buffers_are_those_of_the_network() -> None:
     names = [stage.name for stage in STAGES]
     assert names == ["code", "charts", "olfaction", "cells", "metric_map", "afferents"]
+    first = [stage.name for stage in SMELL_FIRST]
+    assert first == ["smell", *(name.replace("cells", "heading_cells") for name in names)]
     buffers = network().state_dict()
-    for stage in STAGES:
+    for stage in {*STAGES, *SMELL_FIRST}:
         assert {*stage.sums, *stage.recent} <= buffers.keys()
+
+
+def test_place_cells_that_smell_first_are_left_alone_by_what_is_seen() -> None:
+    learner = network(SMELL_FIRST)
+    learn_until(learner, "code")
+    learner.advance_stage()
+    assert int(learner.place.initialised) == len(learner.place.centres)
+    taught, blank = deepcopy(learner.place), deepcopy(learner.heading.preferred)
+    learn_until(learner, "metric_map")
+    assert torch.equal(taught.centres, learner.place.centres)
+    assert torch.equal(taught.covariances, learner.place.covariances)
+    assert not torch.equal(blank, learner.heading.preferred)
 
 
 @pytest.mark.parametrize("winners", [(12, 4), (20, 2)])

@@ -3,7 +3,6 @@ import inspect
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -111,7 +110,7 @@ def test_fit_asks_the_stages_for_epochs_and_order(walk: Recording, monkeypatch: 
             smelt.append(batch.log_odours)
 
     stages = (*STAGES[:2], Listening(), *STAGES[2:])
-    monkeypatch.setattr("cogmap.map.cognitive_map.Network", partial(Network, stages=stages))
+    monkeypatch.setattr("cogmap.map.cognitive_map.STAGES", stages)
     grown = CognitiveMap(charts=20, components=10).fit(walk.views[:300], walk.odours[:300])
     np.testing.assert_array_equal(torch.cat(smelt), np.log(np.tile(walk.odours[:300], (2, 1))))
     assert list(grown.seconds_) == ["retina", *(stage.name for stage in stages)]

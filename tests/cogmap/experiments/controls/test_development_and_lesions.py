@@ -25,6 +25,19 @@ def test_cells_grow_with_experience(result: Result) -> None:
     assert first["heading_median_deg"] > 2 * last["heading_median_deg"]
 
 
+def test_place_cells_that_smell_first_are_there_before_the_eyes_open(result: Result) -> None:
+    told, courses = result.metrics["smell_first"], result.tables["smell_first"]
+    dark, opened = (courses[courses["sensed"] == sense] for sense in ("smell", "sight"))
+    assert dark["views"].tolist() == opened["views"].tolist() == [30, 100, 300, 1000, VIEWS]
+    assert dark["place_cells_passing"].iloc[-1] > 0.5
+    assert (dark["heading_cells_passing"] == 0).all()
+    assert opened["place_cells_passing"].iloc[0] < 0.5 * opened["place_cells_passing"].iloc[-1]
+    assert opened["heading_cells_passing"].iloc[-1] > 0.8
+    assert opened["position_median_m"].iloc[-1] < dark["position_median_m"].iloc[-1]
+    assert told["views_to_mature"].keys() == {"place", "heading"}
+    assert told["views_to_mature_in_the_dark"] in dark["views"].tolist()
+
+
 def test_what_has_grown_again_is_what_there_was(result: Result) -> None:
     assert result.metrics["growth"][-1].keys() - {"views"} == result.metrics["driven"].keys()
     for name, value in result.metrics["driven"].items():
