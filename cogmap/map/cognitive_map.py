@@ -55,6 +55,9 @@ class CognitiveMap:
         adds none.
     place_cells, heading_cells
         Sizes of the two populations.
+    smell
+        How much smell counts beside sight where charts compete for views while they form, so that places
+        that look alike get charts of their own; 0 lets sight alone compete. Sight alone perceives afterwards.
     epoch
         Views per epoch when learning from a stream with `partial_fit`; `fit` sets it to the views it is
         given.
@@ -90,6 +93,7 @@ class CognitiveMap:
     most_charts: int | None = None
     place_cells: int = 150
     heading_cells: int = 60
+    smell: float = 0.5
     epoch: int = 17_000
     seed: int = 0
     device: str = "cpu"
@@ -134,6 +138,8 @@ class CognitiveMap:
                 if type(stage).see is not see:
                     see = type(stage).see
                     seen = joined([network.see(batch) for batch in strips.split(BATCH)])
+                if stage.in_order:
+                    network.break_sequence()  # each epoch begins the walk anew
                 epoch = np.arange(count) if stage.in_order else order.permutation(count)
                 for rows in self._here(epoch).split(BATCH):
                     network.learn_seen(chosen(seen, rows), smells[rows])
@@ -322,6 +328,8 @@ class CognitiveMap:
     ) -> None:
         first = checked_count("charts", self.charts)
         most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
+        if not 0 <= self.smell < np.inf:
+            raise CogmapError(f"smell is {self.smell!r}; give a number of at least 0, how much it counts")
         self._device = checked_device(self.device)
         self._retina = Retina(*view_shape[:2]).to(self._device)
         self.view_shape_, self.odorants_ = view_shape, odorants
@@ -335,6 +343,7 @@ class CognitiveMap:
                 components=checked_count("components", self.components, 3),
                 place_cells=checked_count("place_cells", self.place_cells),
                 heading_cells=checked_count("heading_cells", self.heading_cells),
+                smell=self.smell,
                 epoch=epoch,
                 # drawn on the processor: the same initial weights on every device
                 generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
