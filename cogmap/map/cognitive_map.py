@@ -55,6 +55,9 @@ class CognitiveMap:
         adds none.
     place_cells, heading_cells
         Sizes of the two populations.
+    smell
+        How much smell counts beside sight where charts compete for views while they form, so that places
+        that look alike get charts of their own; 0 lets sight alone compete. Sight alone perceives afterwards.
     smell_first
         Whether place cells learn from what is smelt before anything is seen; else later, from what sight
         recalls of it.
@@ -93,6 +96,7 @@ class CognitiveMap:
     most_charts: int | None = None
     place_cells: int = 150
     heading_cells: int = 60
+    smell: float = 0.5
     smell_first: bool = False
     epoch: int = 17_000
     seed: int = 0
@@ -138,6 +142,8 @@ class CognitiveMap:
                 if type(stage).see is not see:
                     see = type(stage).see
                     seen = joined([network.see(batch) for batch in strips.split(BATCH)])
+                if stage.in_order:
+                    network.break_sequence()  # each epoch begins the walk anew
                 epoch = np.arange(count) if stage.in_order else order.permutation(count)
                 for rows in self._here(epoch).split(BATCH):
                     network.learn_seen(chosen(seen, rows), smells[rows])
@@ -326,6 +332,8 @@ class CognitiveMap:
     ) -> None:
         first = checked_count("charts", self.charts)
         most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
+        if not 0 <= self.smell < np.inf:
+            raise CogmapError(f"smell is {self.smell!r}; give a number of at least 0, how much it counts")
         self._device = checked_device(self.device)
         self._retina = Retina(*view_shape[:2]).to(self._device)
         self.view_shape_, self.odorants_ = view_shape, odorants
@@ -339,6 +347,7 @@ class CognitiveMap:
                 components=checked_count("components", self.components, 3),
                 place_cells=checked_count("place_cells", self.place_cells),
                 heading_cells=checked_count("heading_cells", self.heading_cells),
+                smell=self.smell,
                 epoch=epoch,
                 stages=SMELL_FIRST if self.smell_first else STAGES,
                 # drawn on the processor: the same initial weights on every device

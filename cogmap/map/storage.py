@@ -12,7 +12,7 @@ from torch import Tensor
 from cogmap.atomic import atomic_write
 from cogmap.errors import CogmapError
 
-VERSION = 3
+VERSION = 4
 WEIGHTS, SETTINGS = "weights.safetensors", "map.json"
 
 
