@@ -20,9 +20,12 @@ def found(
     *,
     loops: tuple[float, ...] = (5.0, 1.5),
     voids: tuple[float, ...] = (1.1,),
+    reasons: tuple[str, ...] = ("", "", ""),
 ) -> Betti:
     bars = [np.array([[0.0, np.inf]]), *(np.array([[1.0, ratio] for ratio in r]) for r in (loops, voids))]
-    return Betti(numbers, tuple(bars), (np.inf, 2.0, 1.25), (3, 3, 2), 3, (400, 400, 150), 17_000, "geodesic")
+    return Betti(
+        numbers, tuple(bars), (np.inf, 2.0, 1.25), (3, 3, 2), 3, (400, 400, 150), 17_000, "geodesic", reasons
+    )
 
 
 @pytest.mark.parametrize("name", HOLES)

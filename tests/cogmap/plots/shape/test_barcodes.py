@@ -31,6 +31,7 @@ def annulus() -> Betti:
         landmarks=(400, 400, 150),
         points=17_000,
         metric="geodesic",
+        reasons=("", "", "with 25 neighbours it is 2"),
     )
 
 
