@@ -18,9 +18,9 @@ One pair each, calibrated on clouds of known holes (`cogmap.evaluation.betti_cal
 def doubt(dimension: int, number: int, draws: Sequence[Over], checks: Sequence[tuple[int, Over]]) -> str:
     """Say in one sentence why a Betti number is not resolved; the empty one when it is.
 
-    In every draw the bars that count must stand well over the threshold and the next well under it, and a
-    graph of other neighbours must count as many. Neither can expose a real short cut: where two places look
-    alike their views *are* near to each other, in every draw, in every half, in every graph.
+    In the median draw the bars that count must stand well over the threshold and the next well under it, and
+    a graph of other neighbours must count as many. Nothing of this can expose a real short cut: where two
+    places look alike their views *are* near to each other, in every draw, in every half, in every graph.
 
     Parameters
     ----------
@@ -34,15 +34,14 @@ def doubt(dimension: int, number: int, draws: Sequence[Over], checks: Sequence[t
         Other numbers of neighbours, and the bars in their graphs.
     """
     least, most = MARGINS[dimension]
-    # Nothing stands before the first bar, and nothing is left of one that is not there.
-    lines = [np.concatenate([[np.inf], bars, np.zeros(number + 1)]) for bars in draws]
-    weakest, strongest = min(bars[number] for bars in lines), max(bars[number + 1] for bars in lines)
+    # What stands before the first bar is sure, and of a bar that is not there nothing is left.
+    lines = [np.concatenate([[np.inf], bars, np.zeros(number + 1)])[number : number + 2] for bars in draws]
+    weakest, strongest = np.median(lines, axis=0)
     if weakest < least:
-        return f"its weakest bar is {weakest:.2f} of the threshold, and only from {least} on it is sure"
+        return f"its weakest bar stands at {weakest:.2f} of the threshold, below {least}"
     if strongest > most:
-        return f"a bar that does not count is {strongest:.2f} of the threshold, and only to {most} it is sure"
+        return f"a bar that does not count stands at {strongest:.2f} of the threshold, above {most}"
     for neighbours, bars in checks:
-        counted = int(np.count_nonzero(bars > 1))
-        if counted != number:
+        if (counted := int(np.count_nonzero(bars > 1))) != number:
             return f"with {neighbours} neighbours it is {counted}"
     return ""
