@@ -22,7 +22,7 @@ from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.inputs import check_views, checked_count, log_odours
 from cogmap.map.activity import Activity
 from cogmap.map.device import checked_device
-from cogmap.map.storage import read_map, write_map
+from cogmap.map.storage import read_state, write_state
 from cogmap.threads import in_order, one_thread
 from neurons.angles import mean_angle
 from neurons.errors import NeuronsError
@@ -302,7 +302,7 @@ class CognitiveMap:
             "charts": len(network.charts),
         }
         settings = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "device"}
-        write_map(Path(path), network.state_dict(), settings, learnt)
+        write_state(Path(path), network.state_dict(), settings, learnt)
 
     @classmethod
     def load(cls, path: str | Path, *, device: str = "cpu") -> CognitiveMap:
@@ -313,7 +313,7 @@ class CognitiveMap:
         CogmapError
             When it is missing, damaged or of another version, or the device is not there.
         """
-        weights, settings, learnt = read_map(Path(path))
+        weights, settings, learnt = read_state(Path(path))
         try:
             loaded = cls(**settings, device=device)
             loaded._begin(

@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import pytest
 from joblib import Parallel, delayed
@@ -15,7 +16,6 @@ from cogmap.evaluation.populations import grow_map, perceive
 from cogmap.evaluation.scoring import score
 from cogmap.evaluation.verdicts import MOST, betti_verdict, figure_verdict, worst
 from cogmap.map.cognitive_map import CognitiveMap
-from cogmap.shape import Betti
 
 ROOMS = sorted((Path(__file__).parent / "rooms").glob("*.toml"))
 HOLES = {"ring_corridor": 1, "three_pillars": 3}
@@ -28,11 +28,6 @@ FRESH = 5000
 def stood_by(cmap: CognitiveMap) -> dict[str, bool]:
     """Which of heading and place a map says are to be trusted."""
     return dict.fromkeys(MOST, cmap.trusted_)
-
-
-def resolved(found: Betti) -> tuple[bool, ...]:
-    """Which of its numbers a homology says are resolved."""
-    return getattr(found, "resolved", (True,) * len(found.numbers))
 
 
 def written(numbers: tuple[int, ...], sure: tuple[bool, ...]) -> str:
@@ -49,14 +44,15 @@ def visit(path: Path, views: int, seed: int) -> dict[str, Any]:
     train, test = (perceive(cmap, item.views) for item in (walk, fresh))
     poses = walk.require("poses")
     figures = score(test, fresh.require("poses"), train=(train, poses))
-    found = homologies(cmap.encode(walk.views), train, seed=seed)
+    smells = np.log(walk.require("odours"))
+    found = homologies(cmap.encode(walk.views), train, smells, seed=seed)
     expected = expected_betti(room, poses[0, :2])
     trusted = stood_by(cmap)
     verdicts = {answer: figure_verdict(answer, figures, trusted=trusted[answer]) for answer in MOST}
     numbers = {}
     for cloud, wanted in expected.items():
         if cloud in found:
-            sure = resolved(found[cloud])
+            sure = found[cloud].resolved
             verdicts[f"betti_{cloud}"] = betti_verdict(found[cloud].numbers, sure, wanted)
             numbers[f"betti_{cloud}"] = written(found[cloud].numbers, sure)
     return {

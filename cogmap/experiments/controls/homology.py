@@ -46,6 +46,11 @@ class Case(NamedTuple):
         return self.found is not None and self.found.numbers[: len(self.expected)] == self.expected
 
     @property
+    def resolved(self) -> bool:
+        """Whether all the numbers that are asked for are sure."""
+        return self.found is not None and all(self.found.resolved[: len(self.expected)])
+
+    @property
     def nerve_right(self) -> bool:
         """Whether those of the nerve are."""
         return self.nerve is not None and self.nerve.numbers == self.expected
@@ -72,8 +77,9 @@ def homology(conditions: Conditions) -> Result:
     numbers, the fused map the same pieces and loops, place cells those of the plane and head-direction cells
     those of the circle (`cogmap.evaluation.free_space`). `right` of the `cases` do, by the calibrated rule of
     `betti`; each that does not is drawn by itself. `margin` is the least factor by which a bar would have to
-    change to be judged otherwise. Beside it the nerve of each population, which knows only who is active with
-    whom: `nerve_right` of `nerve_cases`.
+    change to be judged otherwise. `resolved` of them are sure (`betti`, `homologies`), and
+    `wrong_and_resolved` should be none. Beside it the nerve of each population, which knows only who is
+    active with whom: `nerve_right` of `nerve_cases`.
     """
     cases = [
         case
@@ -86,6 +92,8 @@ def homology(conditions: Conditions) -> Result:
         metrics={
             "cases": len(cases),
             "right": sum(case.right for case in cases),
+            "resolved": sum(case.resolved for case in cases),
+            "wrong_and_resolved": sum(case.resolved and not case.right for case in cases),
             "nerve_cases": len(populations),
             "nerve_right": sum(case.nerve_right for case in populations),
             "rooms": _by_room(cases, _figures),
@@ -117,7 +125,8 @@ def _visit(conditions: Conditions) -> list[Case]:
     walk = conditions.explore(Brownian(), Camera.panoramic())
     cmap = grow_map(walk, conditions.map, seed=conditions.seed)
     activity = perceive(cmap, walk.views)
-    found = homologies(cmap.encode(walk.views), activity, seed=conditions.seed)
+    smells = np.log(walk.require("odours"))
+    found = homologies(cmap.encode(walk.views), activity, smells, seed=conditions.seed)
     nerves = {name: population_nerve(getattr(activity, name)) for name in POPULATIONS if name in found}
     room = conditions.room
     expected = expected_betti(room, walk.require("poses")[0, :2])
@@ -137,10 +146,11 @@ def _by_room(cases: list[Case], figure_of: Callable[[Case], T]) -> dict[str, dic
 
 def _figures(case: Case) -> dict[str, Any]:
     found = case.found
+    told = {"betti": "numbers", "votes": "votes", "resolved": "resolved", "unresolved_because": "reasons"}
     return {
         "expected": list(case.expected),
         "right": case.right,
-        **({} if found is None else {"betti": list(found.numbers), "votes": list(found.votes)}),
+        **({} if found is None else {key: list(getattr(found, name)) for key, name in told.items()}),
         "margin": case.margin,
         **({} if case.nerve is None else {"nerve": list(case.nerve.numbers)}),
         **({"reason": case.reason} if case.reason else {}),
