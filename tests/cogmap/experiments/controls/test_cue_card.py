@@ -23,7 +23,7 @@ def test_only_the_card_turns(name: str) -> None:
 
 def test_cells_follow_the_card_in_the_light_and_smells_in_the_dark() -> None:
     room, eye = Arena.load("cue_cylinder"), Camera.panoramic(90, 15)
-    result = run_experiment("cue_card", views=2000, camera=eye, room=room)
+    result = run_experiment("cue_card", views=1000, camera=eye, room=room)
     found = result.metrics["cue_cylinder"]
     assert found["light"]["place_follows_card"] > 0.95
     assert found["dark"]["place_follows_card"] < 0.05
