@@ -93,7 +93,7 @@ class _Found(NamedTuple):
     def over(self) -> Over:
         """π over the threshold; of an infinite one only infinite bars count."""
         found = rips.ratios(self.bars)
-        return np.divide(found, self.threshold, out=np.full_like(found, np.inf), where=np.isfinite(found))
+        return np.asarray(np.where(np.isinf(found), np.inf, found / self.threshold))
 
     @property
     def number(self) -> int:
