@@ -76,9 +76,9 @@ def homology(conditions: Conditions) -> Result:
     numbers, the fused map the same pieces and loops, place cells those of the plane and head-direction cells
     those of the circle (`expected_numbers`). `right` of the `cases` do, by the calibrated rule of `betti`;
     each that does not is drawn by itself. `margin` is the least factor by which a bar would have to change to
-    be judged otherwise. `resolved` of them are sure (`betti`, `homologies`), and `wrong_and_resolved` should be
-    none. Beside it the nerve of each population, which knows only who is active with whom:
-    `nerve_right` of `nerve_cases`.
+    be judged otherwise. `resolved` of them are sure (`betti`, `homologies`), and `wrong_and_resolved` should
+    be none. Beside it the nerve of each population, which knows only who is active with whom: `nerve_right`
+    of `nerve_cases`.
     """
     cases = [
         case

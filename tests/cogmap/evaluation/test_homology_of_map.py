@@ -1,12 +1,9 @@
 import numpy as np
-
 import pytest
 
 from cogmap import Activity, Betti
-from cogmap.evaluation.betti_calibration import SPACES, draw, judge
 from cogmap.evaluation.homology_of_map import SMELL, homologies, seen_and_smelt, unless_aliased
 from cogmap.graph import nearest_points
-from cogmap.shape import betti
 
 
 def betti_of(numbers: tuple[int, ...], reasons: tuple[str, ...] = ("", "", "")) -> Betti:
@@ -39,8 +36,8 @@ def test_smell_counts_by_its_noise_whatever_the_order() -> None:
     smells = rng.normal(smells, 0.2)
     joint = seen_and_smelt(codes, smells)
     np.testing.assert_array_equal(joint[:, :3], codes)
-    spacing = np.median(nearest_points(codes, 1).distances)
-    np.testing.assert_allclose(joint[:, 3:] / smells, SMELL * spacing / 0.2, rtol=0.1)
+    radius = np.median(nearest_points(codes, 15).distances[:, -1])
+    np.testing.assert_allclose(joint[:, 3:] / smells, SMELL * radius / 0.2, rtol=0.1)
     order = rng.permutation(900)
     np.testing.assert_allclose(seen_and_smelt(codes[order], smells[order]), joint[order], rtol=1e-9)
 
