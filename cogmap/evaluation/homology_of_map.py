@@ -10,11 +10,11 @@ from cogmap.graph import nearest_points
 from cogmap.map.activity import Activity
 from cogmap.shape.homology import Betti, betti
 
-SMELL = 0.3
-"""Spacings of the codes that one σ of the nose counts: .2 leaves look-alike places joined in a room of four
-equal walls and one card, .5 begins to fill holes with the noise of the nose."""
-NEAREST = 8
-"""Codes among which a smell is expected to be the same."""
+SMELL = 0.2
+"""Radii of a neighbourhood of codes that one σ of the nose counts: at .1 places that look alike are still
+joined in a room of four equal walls and one card."""
+NEAREST = 15
+"""Codes of a neighbourhood, as many as `betti` joins, in which a smell is expected to be the same."""
 
 
 def homologies(
@@ -62,15 +62,17 @@ def homologies(
 def seen_and_smelt(
     codes: Float[np.ndarray, "views components"], smells: Float[np.ndarray, "views odorants"]
 ) -> Float[np.ndarray, "views features"]:
-    """Put smell beside sight, [z, λ o] with λ = `SMELL` × spacing of the codes / noise of the nose.
+    """Put smell beside sight, [z, λ o] with λ = `SMELL` × radius of a neighbourhood of codes / nose's noise.
 
-    The noise is taken from smells among the nearest codes, so that the order of views does not matter.
+    What smells otherwise by more than the nose errs is then no longer among the neighbours, in a manifold of
+    any dimension. The noise is taken from smells among the nearest codes, so that the order of views does not
+    matter.
     """
     nearest = nearest_points(codes, NEAREST)
     residual = smells - smells[nearest.indices].mean(axis=1)
     # The deviation of a normal variable over the median of its size; the mean of the others has noise too.
     noise = 1.4826 * np.median(abs(residual)) / np.sqrt(1 + 1 / NEAREST)
-    return np.hstack([codes, SMELL * np.median(nearest.distances[:, 0]) / noise * smells])
+    return np.hstack([codes, SMELL * np.median(nearest.distances[:, -1]) / noise * smells])
 
 
 def unless_aliased(alone: Betti, joint: Betti, *, turning: bool = False) -> Betti:

@@ -93,7 +93,8 @@ class _Found(NamedTuple):
     def over(self) -> Over:
         """π over the threshold; of an infinite one only infinite bars count."""
         found = rips.ratios(self.bars)
-        return np.divide(found, self.threshold, out=np.full_like(found, np.inf), where=np.isfinite(found))
+        endless = np.full_like(found, np.inf)
+        return np.asarray(np.divide(found, self.threshold, out=endless, where=np.isfinite(found)))
 
     @property
     def number(self) -> int:

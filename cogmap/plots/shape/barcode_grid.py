@@ -23,7 +23,8 @@ def plot_barcode_grid(
 
     Loops stand above voids. Bars that count are coloured, and the dashed line across them is what they must
     exceed. The title of a panel tells the numbers found, those that are not resolved with a question mark;
-    where they are not as expected it is red and tells those too. The panels of a column share their logarithmic axis.
+    where they are not as expected it is red and tells those too. The panels of a column share their
+    logarithmic axis.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ def plot_barcode_grid(
         column[-1].set_xlabel("π = death / birth, no unit", fontsize=SMALL, color=INK)
     for axes, room in zip(panels[:, 0], results, strict=True):
         axes.set_ylabel(room.replace("_", " "), fontsize=SMALL, color=INK)
-    title = "Betti numbers; loops (blue) above voids (violet), dashed what a bar must exceed to count; ? unresolved"
+    title = "Betti numbers (? unresolved); loops (blue) above voids (violet), dashed what a bar must exceed"
     figure.suptitle(title, fontsize=SMALL + 1, color=INK)
     return figure
 

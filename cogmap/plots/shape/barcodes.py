@@ -18,7 +18,8 @@ def plot_barcodes(results: Mapping[str, Betti], *, bars: int = 12) -> Figure:
     """Draw, for every result and dimension, the largest bars as π = death / birth against the threshold.
 
     One line of panels per result: loops (H₁) and voids (H₂). Bars that count are coloured; the dashed line is
-    what a bar must exceed. Above each stands what was found, and whether it is resolved. The axes of a dimension are logarithmic and the same for all results.
+    what a bar must exceed. Above each line stands what was found, and what of it is unresolved. The axes of a
+    dimension are logarithmic and the same for all results.
 
     Parameters
     ----------
