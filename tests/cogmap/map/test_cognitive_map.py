@@ -116,6 +116,20 @@ def test_fit_asks_the_stages_for_epochs_and_order(walk: Recording, monkeypatch: 
     assert list(grown.seconds_) == ["retina", *(stage.name for stage in stages)]
 
 
+def test_place_cells_can_learn_before_anything_is_seen(walk: Recording, tmp_path: Path) -> None:
+    views, odours = walk.views[:300], walk.odours[:300]
+    infant = CognitiveMap(charts=20, components=10, place_cells=30, smell_first=True, epoch=300)
+    infant.partial_fit(views, odours)
+    learnt = infant.state_dict()
+    assert int(learnt["place.initialised"]) == 30
+    assert int(learnt["charts.initialised"]) == 0
+    infant.save(tmp_path / "map")
+    other = CognitiveMap.load(tmp_path / "map")
+    for each in (infant, other):
+        each.partial_fit(views, odours).partial_fit(views, odours)
+    assert same(infant, other)
+
+
 def test_small_map_knows_place_and_heading(walk: Recording, camera: Camera, cmap: CognitiveMap) -> None:
     fresh = explore(Arena.load("furnished"), Brownian(), camera, views=600, seed=1000)
     found = score(cmap.perceive(fresh.views), fresh.poses, train=(cmap.perceive(walk.views), walk.poses))
