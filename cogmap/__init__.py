@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from cogmap.features import BagOfWords
     from cogmap.map.activity import Activity
     from cogmap.map.cognitive_map import CognitiveMap
+    from cogmap.map.even_memory import EvenMemory
     from cogmap.navigation import Localiser, VisualRoadmap
     from cogmap.shape import Betti, LandmarkIsomap, betti
     from cogmap.sweeps import Plan, sweep
@@ -20,6 +21,7 @@ __all__ = [
     "Betti",
     "CogmapError",
     "CognitiveMap",
+    "EvenMemory",
     "LandmarkIsomap",
     "Localiser",
     "Plan",
@@ -45,6 +47,7 @@ _HOMES = {
     "features": ("BagOfWords",),
     "map.activity": ("Activity",),
     "map.cognitive_map": ("CognitiveMap",),
+    "map.even_memory": ("EvenMemory",),
     "navigation": ("Localiser", "VisualRoadmap"),
     "shape": ("Betti", "LandmarkIsomap", "betti"),
     "sweeps": ("Plan", "sweep"),

@@ -17,9 +17,10 @@ from neurons.layers.retina import Retina
 from neurons.layers.sanger import Sanger
 from neurons.merging import forked, merge
 from neurons.network import Network
-from neurons.stages import STAGES, Batch, Stage
+from neurons.stages import SMELL_FIRST, STAGES, Batch, Stage
 
 __all__ = [
+    "SMELL_FIRST",
     "STAGES",
     "Afferents",
     "Atlas",

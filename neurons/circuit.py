@@ -1,10 +1,9 @@
 """The circuit: all layers, and the way of a view through them."""
 
 import math
-from typing import NamedTuple
 
 import torch
-from jaxtyping import Float, Int
+from jaxtyping import Float
 from torch import Tensor, nn
 
 from neurons.atlas.atlas import Atlas
@@ -14,24 +13,8 @@ from neurons.layers.charts import Charts
 from neurons.layers.heading_cells import HeadDirectionCells
 from neurons.layers.olfaction import Olfaction
 from neurons.layers.place_cells import PlaceCells
-from neurons.layers.readout import ChartActivity, Readout
+from neurons.layers.readout import Readout, Recalled
 from neurons.layers.sanger import Sanger
-
-
-class Recalled(NamedTuple):
-    """What the atlas recalls at the sight of views."""
-
-    chart: Int[Tensor, "views winners"]
-    weight: Float[Tensor, "views winners"]
-    heading: Float[Tensor, "views"]
-    """In the map's own frame, rad; NaN without a compass."""
-    odour: Float[Tensor, "views odorants"]
-    """Log concentrations."""
-
-    @property
-    def excited(self) -> ChartActivity:
-        """Which charts are active, and how much."""
-        return ChartActivity(self.chart, self.weight)
 
 
 class Circuit(nn.Module):
@@ -47,6 +30,8 @@ class Circuit(nn.Module):
         Up to how many charts can be added.
     generator
         Draws the initial weights, on the processor; `to` takes the layers to another device, to learn there.
+    smell
+        κ, how much smell counts beside sight where charts compete (`neurons.layers.charts.Charts`).
     least_eigenvalue
         Least agreement of the phases in an atlas to be trusted; at .998 headings have been seen 12° off.
     least_sign_agreement
@@ -64,6 +49,7 @@ class Circuit(nn.Module):
         place_cells: int,
         heading_cells: int,
         generator: torch.Generator,
+        smell: float = 0.5,
         least_eigenvalue: float = 0.999,
         least_sign_agreement: float = 0.995,
     ) -> None:
@@ -72,7 +58,7 @@ class Circuit(nn.Module):
         self.least_eigenvalue = least_eigenvalue
         self.least_sign_agreement = least_sign_agreement
         self.code = Sanger(features, components, generator=generator)
-        self.charts = Charts(charts, components, generator=generator)
+        self.charts = Charts(charts, components, odorants, generator=generator, smell=smell)
         self.olfaction = Olfaction(charts, odorants)
         self.readout = Readout(charts, components, odorants)
         self.place = PlaceCells(place_cells, charts, odorants)
@@ -83,8 +69,8 @@ class Circuit(nn.Module):
     def recall(self, strips: Float[Tensor, "views features"]) -> Recalled:
         """Tell heading and smell from sight."""
         codes = self.code(strips)
-        excited = self.readout.excite(self.charts, codes)
-        return Recalled(*excited, *self.readout(self.charts, codes, excited))
+        recalled: Recalled = self.readout(self.charts, codes, self.readout.excite(self.charts, codes))
+        return recalled
 
     def atlas_diagnosis(self) -> str:
         """Say in what the charts do not agree, or nothing when they do."""
@@ -103,11 +89,13 @@ class Circuit(nn.Module):
     def add_charts(self) -> None:
         """Double the charts where they lie farthest apart; what stands on them is as before any view."""
         count, (cells, odorants) = len(self.charts), self.place.centres.shape
-        self.charts.grow(Atlas.of(self.charts.centres).edges, min(count, self.most_charts - count))
+        self.charts.grow(Atlas.of(self.charts.points).edges, min(count, self.most_charts - count))
         count, components = self.charts.centres.shape
         self.olfaction = Olfaction(count, odorants)
         self.readout = Readout(count, components, odorants)
-        self.place = PlaceCells(cells, count, odorants)
+        # place cells that have learnt before there were charts keep what they prefer
+        self.place.branches = torch.ones(count, cells, dtype=torch.bool)
+        self.place.afferents = Afferents(count, cells)
         # preferred directions stay as drawn: a map that was saved and loaded has no generator to go on with
         self.heading.afferents = Afferents(count, len(self.heading.preferred))
         self.agreement.fill_(torch.nan)

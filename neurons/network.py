@@ -17,9 +17,10 @@ class Network(Circuit):
     Each layer learns during its own critical period, and those before it are then fixed: first the code, then
     the charts; then each chart learns how smell changes across it; then the charts agree on a compass, the
     cells share out what is recalled; from the order of views the metric map learns where places are and by
-    how much the compass is off there; and at last the cells' afferents from sight are learnt. From the third
-    stage on, all but what the cells compete for are sums. While the guard says that the atlas is too coarse,
-    the number of charts is doubled, and all that follows the code is learnt again.
+    how much the compass is off there, and once more with the compass corrected; and at last the cells'
+    afferents from sight are learnt. From the third stage on, all but what the cells compete for are sums.
+    While the guard says that the atlas is too coarse, the number of charts is doubled, and all that follows
+    the code is learnt again.
 
     Parameters
     ----------

@@ -13,8 +13,9 @@ from torch import Tensor, nn
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.heading_axis import heading_axes
 from neurons.atlas.synchronisation import synchronise
-from neurons.circuit import Circuit, Recalled
+from neurons.circuit import Circuit
 from neurons.errors import NeuronsError
+from neurons.layers.readout import Recalled
 
 Seen = TypeVar("Seen", Tensor, Recalled)
 """Views as a stage sees them: rows of a tensor, or what the atlas recalls."""
@@ -126,6 +127,18 @@ class RecallStage(Stage[Recalled]):
 
 
 @dataclass(frozen=True)
+class SmellStage(StripStage):
+    """Place cells share out the smells themselves: an animal whose eyes are still closed."""
+
+    name = "smell"
+    epochs: int = 2
+
+    def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:
+        """Let the place cells compete."""
+        circuit.place.compete(batch.log_odours, window=batch.window)
+
+
+@dataclass(frozen=True)
 class CodeStage(StripStage):
     """Principal components of the retina's strips."""
 
@@ -155,12 +168,12 @@ class ChartStage(CodedStage):
         """Let the nearest charts learn, fewer and fewer, falling geometrically."""
         first, last = self.winners
         winners = round(float(first * (last / first) ** batch.progress))
-        circuit.charts.partial_fit(batch.seen, winners=winners, window=batch.window)
+        circuit.charts.partial_fit(batch.seen, batch.log_odours, winners=winners, window=batch.window)
 
     def finish(self, circuit: Circuit) -> None:
         """Freeze the charts, and measure how far apart they lie."""
         circuit.charts.freeze()
-        circuit.readout.spacing = Atlas.of(circuit.charts.centres).spacing
+        circuit.readout.spacing = Atlas.of(circuit.charts.points).spacing
 
 
 @dataclass(frozen=True)
@@ -180,7 +193,7 @@ class OlfactionStage(CodedStage):
     def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:
         """Add views to the regressions of the charts near them, with Gaussian weights."""
         codes = batch.seen
-        nearest = circuit.charts.excite(codes, self.winners)
+        nearest = circuit.charts.excite(codes, self.winners, batch.log_odours)
         weight = torch.exp(-0.5 * nearest.squared_distance / circuit.readout.spacing[nearest.chart] ** 2)
         coordinates = circuit.charts.coordinates(codes, nearest.chart)
         circuit.olfaction.partial_fit(nearest.chart, weight, coordinates, batch.log_odours)
@@ -195,7 +208,7 @@ class OlfactionStage(CodedStage):
 
     @staticmethod
     def _orient(circuit: Circuit) -> None:
-        atlas = Atlas.of(circuit.charts.centres)
+        atlas = Atlas.of(circuit.charts.points)
         intercepts, jacobians = circuit.olfaction.solve()
         axes = heading_axes(circuit.charts.tangents, jacobians, atlas)
         compass = None
@@ -219,6 +232,18 @@ class CellStage(RecallStage):
 
 
 @dataclass(frozen=True)
+class HeadingStage(RecallStage):
+    """Head-direction cells share out the headings, beside place cells that have learnt before."""
+
+    name = "heading_cells"
+    epochs: int = CellStage.epochs
+
+    def learn(self, circuit: Circuit, batch: Batch[Recalled]) -> None:
+        """Let the head-direction cells compete."""
+        circuit.heading.compete(batch.seen.heading, window=batch.window)
+
+
+@dataclass(frozen=True)
 class MetricMapStage(RecallStage):
     """Where places are, and by how much the compass is off there, from the order of views."""
 
@@ -232,9 +257,21 @@ class MetricMapStage(RecallStage):
         circuit.metric_map.partial_fit(circuit.place, batch.seen.odour, batch.seen.heading)
 
     def finish(self, circuit: Circuit) -> None:
-        """Solve for positions and offsets, and let each place cell keep to one place."""
+        """Solve for positions and offsets, and forget the sums they were made of."""
         circuit.metric_map.solve()
-        edges = Atlas.of(circuit.charts.centres).edges
+        circuit.metric_map.begin_again()
+
+
+@dataclass(frozen=True)
+class CorrectedMetricMapStage(MetricMapStage):
+    """The metric map once more, on corrected headings: more ways are straight, and all agree better."""
+
+    name = "corrected_metric_map"
+
+    def finish(self, circuit: Circuit) -> None:
+        """Solve for positions and what is left of the offsets; let each place cell keep to one place."""
+        circuit.metric_map.solve()
+        edges = Atlas.of(circuit.charts.points).edges
         circuit.place.disambiguate(circuit.readout.intercepts, circuit.readout.phases, edges)
 
 
@@ -261,6 +298,13 @@ STAGES: tuple[Stage[Any], ...] = (
     OlfactionStage(),
     CellStage(),
     MetricMapStage(),
+    CorrectedMetricMapStage(),
     AfferentStage(),
 )
 """Stages in order; each stands on what those before it have fixed."""
+
+SMELL_FIRST: tuple[Stage[Any], ...] = (
+    SmellStage(),
+    *(HeadingStage() if isinstance(stage, CellStage) else stage for stage in STAGES),
+)
+"""The same, but place cells learn before there is anything to see."""

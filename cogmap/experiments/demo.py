@@ -65,7 +65,8 @@ def demo(
     Returns
     -------
     dict
-        The figures of `cogmap.score`, the nose's own position error, Betti numbers, seconds by stage, memory.
+        The figures of `cogmap.score`, the nose's own position error, Betti numbers, which of them are
+        resolved and why the others are not, seconds by stage, memory.
 
     Raises
     ------
@@ -90,7 +91,8 @@ def demo(
         with clock("score"):
             figures = trial.score | trial.nose_figures
         with clock("homology"):
-            bars = homologies(cmap.encode(trial.walk.views), learnt, landmarks=landmarks, seed=seed)
+            codes, smells = cmap.encode(trial.walk.views), trial.smells[0]
+            bars = homologies(codes, learnt, smells, landmarks=landmarks, seed=seed)
         if folder is not None:
             with clock("figures"):
                 drawn = _draw(trial, bars)
@@ -105,6 +107,8 @@ def demo(
             "metric_reason": cmap.metric_reason_,
             **figures,
             **{f"betti_{name}": list(found.numbers) for name, found in bars.items()},
+            **{f"betti_{name}_resolved": list(found.resolved) for name, found in bars.items()},
+            "betti_reasons": {name: list(found.reasons) for name, found in bars.items()},
             "betti_votes": {name: list(found.votes) for name, found in bars.items()},
             "phase_eigenvalue": cmap.phase_eigenvalue_,
             "seconds": seconds,

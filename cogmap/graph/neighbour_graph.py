@@ -1,5 +1,6 @@
 """Neighbour graphs: who is next to whom in a cloud."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -60,25 +61,38 @@ def neighbour_graph(
     CogmapError
         When X is not a finite matrix or has no more distinct points than `neighbours`.
     """
-    if neighbours < 1:
-        raise CogmapError(f"neighbours is {neighbours}; ask for at least one nearest neighbour")
+    (graph,) = neighbour_graphs(X, (neighbours,), metric=metric, one_sided=one_sided)
+    return graph
+
+
+def neighbour_graphs(
+    X: Cloud, counts: Sequence[int], *, metric: Metric = "euclidean", one_sided: int | None = None
+) -> list[sp.csr_array]:
+    """Make the `neighbour_graph` of each of several numbers of neighbours, for which it searches but once."""
+    fewest, most = min(counts), max(counts)
+    if fewest < 1:
+        raise CogmapError(f"neighbours is {fewest}; ask for at least one nearest neighbour")
     points, first, same = distinct(checked_cloud(X))
-    if points.shape[0] <= neighbours:
+    if points.shape[0] <= most:
         raise CogmapError(
-            f"{points.shape[0]} distinct points cannot have {neighbours} nearest neighbours each; "
+            f"{points.shape[0]} distinct points cannot have {most} nearest neighbours each; "
             "give more points or ask for fewer neighbours"
         )
-    ends, lengths = nearest_points(points, neighbours, metric=metric)
-    found = ends >= 0
-    if one_sided is not None:
-        found &= _mutual(ends) | (np.arange(neighbours) < one_sided)
+    nearest = nearest_points(points, most, metric=metric)
     repeats = np.setdiff1d(np.arange(X.shape[0]), first)
-    rows = np.concatenate([np.repeat(first, found.sum(axis=1)), repeats])
-    columns = np.concatenate([first[ends[found]], first[same.ravel()[repeats]]])
-    # Distinct points can be nearer than rounding tells; the edge must survive that.
-    values = np.concatenate([np.maximum(lengths[found], SMALLEST), np.full(len(repeats), SMALLEST)])
-    graph = sp.csr_array((values.astype(np.float64), (rows, columns)), shape=(X.shape[0], X.shape[0]))
-    return sp.csr_array(graph.maximum(graph.T))
+    graphs = []
+    for neighbours in counts:
+        ends, lengths = nearest.indices[:, :neighbours], nearest.distances[:, :neighbours]
+        found = ends >= 0
+        if one_sided is not None:
+            found &= _mutual(ends) | (np.arange(neighbours) < one_sided)
+        rows = np.concatenate([np.repeat(first, found.sum(axis=1)), repeats])
+        columns = np.concatenate([first[ends[found]], first[same.ravel()[repeats]]])
+        # Distinct points can be nearer than rounding tells; the edge must survive that.
+        values = np.concatenate([np.maximum(lengths[found], SMALLEST), np.full(len(repeats), SMALLEST)])
+        graph = sp.csr_array((values.astype(np.float64), (rows, columns)), shape=(X.shape[0], X.shape[0]))
+        graphs.append(sp.csr_array(graph.maximum(graph.T)))
+    return graphs
 
 
 def _mutual(ends: Int[np.ndarray, "points neighbours"]) -> Bool[np.ndarray, "points neighbours"]:

@@ -22,14 +22,14 @@ from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.inputs import check_views, checked_count, log_odours
 from cogmap.map.activity import Activity
 from cogmap.map.device import checked_device
-from cogmap.map.storage import read_map, write_map
+from cogmap.map.storage import read_state, write_state
 from cogmap.threads import in_order, one_thread
 from neurons.angles import mean_angle
 from neurons.errors import NeuronsError
 from neurons.layers.retina import Retina
 from neurons.merging import forked, merge
 from neurons.network import Network
-from neurons.stages import StripStage, chosen, joined
+from neurons.stages import SMELL_FIRST, STAGES, StripStage, chosen, joined
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same map."""
@@ -55,6 +55,12 @@ class CognitiveMap:
         adds none.
     place_cells, heading_cells
         Sizes of the two populations.
+    smell
+        How much smell counts beside sight where charts compete for views while they form, so that places
+        that look alike get charts of their own; 0 lets sight alone compete. Sight alone perceives afterwards.
+    smell_first
+        Whether place cells learn from what is smelt before anything is seen; else later, from what sight
+        recalls of it.
     epoch
         Views per epoch when learning from a stream with `partial_fit`; `fit` sets it to the views it is
         given.
@@ -90,6 +96,8 @@ class CognitiveMap:
     most_charts: int | None = None
     place_cells: int = 150
     heading_cells: int = 60
+    smell: float = 0.5
+    smell_first: bool = False
     epoch: int = 17_000
     seed: int = 0
     device: str = "cpu"
@@ -134,6 +142,8 @@ class CognitiveMap:
                 if type(stage).see is not see:
                     see = type(stage).see
                     seen = joined([network.see(batch) for batch in strips.split(BATCH)])
+                if stage.in_order:
+                    network.break_sequence()  # each epoch begins the walk anew
                 epoch = np.arange(count) if stage.in_order else order.permutation(count)
                 for rows in self._here(epoch).split(BATCH):
                     network.learn_seen(chosen(seen, rows), smells[rows])
@@ -292,7 +302,7 @@ class CognitiveMap:
             "charts": len(network.charts),
         }
         settings = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "device"}
-        write_map(Path(path), network.state_dict(), settings, learnt)
+        write_state(Path(path), network.state_dict(), settings, learnt)
 
     @classmethod
     def load(cls, path: str | Path, *, device: str = "cpu") -> CognitiveMap:
@@ -303,7 +313,7 @@ class CognitiveMap:
         CogmapError
             When it is missing, damaged or of another version, or the device is not there.
         """
-        weights, settings, learnt = read_map(Path(path))
+        weights, settings, learnt = read_state(Path(path))
         try:
             loaded = cls(**settings, device=device)
             loaded._begin(
@@ -322,6 +332,8 @@ class CognitiveMap:
     ) -> None:
         first = checked_count("charts", self.charts)
         most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
+        if not 0 <= self.smell < np.inf:
+            raise CogmapError(f"smell is {self.smell!r}; give a number of at least 0, how much it counts")
         self._device = checked_device(self.device)
         self._retina = Retina(*view_shape[:2]).to(self._device)
         self.view_shape_, self.odorants_ = view_shape, odorants
@@ -335,7 +347,9 @@ class CognitiveMap:
                 components=checked_count("components", self.components, 3),
                 place_cells=checked_count("place_cells", self.place_cells),
                 heading_cells=checked_count("heading_cells", self.heading_cells),
+                smell=self.smell,
                 epoch=epoch,
+                stages=SMELL_FIRST if self.smell_first else STAGES,
                 # drawn on the processor: the same initial weights on every device
                 generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
             ).to(self._device)

@@ -1,9 +1,9 @@
-"""Storage of a map on disk: a folder with its weights and its settings, neither of which can run code."""
+"""Storage on disk: a folder with weights and settings, neither of which can run code."""
 
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
@@ -12,37 +12,43 @@ from torch import Tensor
 from cogmap.atomic import atomic_write
 from cogmap.errors import CogmapError
 
-VERSION = 3
-WEIGHTS, SETTINGS = "weights.safetensors", "map.json"
+Kind = Literal["map", "memory"]
+VERSIONS: dict[Kind, int] = {"map": 4, "memory": 1}
+WEIGHTS = "weights.safetensors"
 
 
-def write_map(
-    path: Path, weights: Mapping[str, Tensor], settings: Mapping[str, Any], learnt: Mapping[str, Any]
+def write_state(
+    path: Path,
+    weights: Mapping[str, Tensor],
+    settings: Mapping[str, Any],
+    learnt: Mapping[str, Any],
+    *,
+    kind: Kind = "map",
 ) -> None:
     """Fill a new folder under another name and give it the right one at the end."""
-    described = {"version": VERSION, "settings": dict(settings), "learnt": dict(learnt)}
+    described = {"version": VERSIONS[kind], "settings": dict(settings), "learnt": dict(learnt)}
     with atomic_write(path, overwrite=False) as folder:
         folder.mkdir()
         save_file({name: weight.cpu().contiguous() for name, weight in weights.items()}, folder / WEIGHTS)
-        (folder / SETTINGS).write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+        (folder / f"{kind}.json").write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 
 
-def read_map(path: Path) -> tuple[dict[str, Tensor], dict[str, Any], dict[str, Any]]:
+def read_state(path: Path, *, kind: Kind = "map") -> tuple[dict[str, Tensor], dict[str, Any], dict[str, Any]]:
     """Read weights, settings and what was learnt about the input."""
     try:
-        described = json.loads((path / SETTINGS).read_text(encoding="utf-8"))
+        described = json.loads((path / f"{kind}.json").read_text(encoding="utf-8"))
         weights = load_file(path / WEIGHTS)
     except OSError as error:
-        raise CogmapError(f"cannot read a map at {path}: {error.strerror or error}") from None
+        raise CogmapError(f"cannot read a {kind} at {path}: {error.strerror or error}") from None
     except (ValueError, SafetensorError) as error:
-        raise CogmapError(f"{path} is damaged or not a map: {error}") from None
+        raise CogmapError(f"{path} is damaged or not a {kind}: {error}") from None
     version = described.get("version") if isinstance(described, dict) else None
-    if version != VERSION:
+    if version != VERSIONS[kind]:
         raise CogmapError(
-            f"{path} is a map of version {version!r}, not {VERSION}; learn it again, "
+            f"{path} is a {kind} of version {version!r}, not {VERSIONS[kind]}; learn it again, "
             "or load it with the program that wrote it"
         )
     try:
         return weights, described["settings"], described["learnt"]
     except KeyError as error:
-        raise CogmapError(f"{path} is damaged: {SETTINGS} lacks {error}") from None
+        raise CogmapError(f"{path} is damaged: {kind}.json lacks {error}") from None

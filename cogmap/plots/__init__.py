@@ -2,6 +2,7 @@
 
 from cogmap.plots.cells.afferents import plot_afferents
 from cogmap.plots.cells.cell_types import plot_cell_types
+from cogmap.plots.cells.cue_control import plot_cue_control
 from cogmap.plots.cells.examples import plot_examples
 from cogmap.plots.cells.heading_cells import plot_tuning_curves
 from cogmap.plots.cells.learning_curves import plot_courses
@@ -36,6 +37,7 @@ __all__ = [
     "plot_compass",
     "plot_confusion",
     "plot_courses",
+    "plot_cue_control",
     "plot_embedding",
     "plot_examples",
     "plot_goals",

@@ -24,12 +24,13 @@ TABLE = Path(__file__).with_name("betti_thresholds.json")
 LANDMARKS = {0: (25, 50, 100, 200, 400), 1: (25, 50, 100, 200, 400), 2: (25, 50, 100, 200)}
 CROWDS = (1, 2, 4, 8, 16, 32)
 """Points per landmark; beyond the last the thresholds hardly fall."""
-NEIGHBOURS = 15
+NEIGHBOURS = (15, 25)
+"""Of the neighbour graphs."""
 CLOUDS = 100
 
 
 def threshold(
-    metric: Metric, dimension: int, *, points: int, landmarks: int, neighbours: int = NEIGHBOURS
+    metric: Metric, dimension: int, *, points: int, landmarks: int, neighbours: int = NEIGHBOURS[0]
 ) -> float:
     """Largest π = death / birth that chance alone explains, for this many landmarks of this many points.
 
@@ -37,8 +38,8 @@ def threshold(
     the same way: as many points, the same neighbour graph, landmarks by farthest points in the same metric.
     Looked up in a table by log-linear interpolation. What is outside it is simulated, the same every time,
     and kept for the process: quick for fewer than 25 landmarks, minutes for more than 400 (H2: 200) or for
-    fewer than 15 neighbours. More than 15 neighbours are judged as 15 and more than 32 points per landmark
-    as 32 (8 when simulated), which errs on the strict side.
+    fewer than 15 neighbours. Numbers of neighbours between those of the table are judged as the next lower
+    one, and more than 32 points per landmark as 32 (8 when simulated), which errs on the strict side.
 
     Parameters
     ----------
@@ -63,11 +64,13 @@ def threshold(
         return float("inf")
     crowd = min(max(points / landmarks, 1.0), float(CROWDS[-1]))
     grid = LANDMARKS[dimension]
-    if not grid[0] <= landmarks <= grid[-1] or (metric == "geodesic" and neighbours < NEIGHBOURS):
+    judged = max((known for known in NEIGHBOURS if known <= neighbours), default=neighbours)
+    if not grid[0] <= landmarks <= grid[-1] or (metric == "geodesic" and judged not in NEIGHBOURS):
         # Of eight points per landmark thresholds are a little strict, but take minutes instead of an hour.
         crowd = min(crowd, 8)
-        return _simulated(metric, dimension, round(crowd * landmarks), landmarks, min(neighbours, NEIGHBOURS))
-    table = RegularGridInterpolator((np.log(grid), np.log(CROWDS)), _table()[metric][dimension])
+        return _simulated(metric, dimension, round(crowd * landmarks), landmarks, judged)
+    rows = _table()[metric if metric == "euclidean" else f"{metric}_{judged}"][dimension]
+    table = RegularGridInterpolator((np.log(grid), np.log(CROWDS)), rows)
     return float(table((np.log(landmarks), np.log(crowd))))
 
 
@@ -78,7 +81,7 @@ def largest_ratios(
     sizes: Sequence[tuple[int, int]],
     *,
     rng: np.random.Generator,
-    neighbours: int = NEIGHBOURS,
+    neighbours: int = NEIGHBOURS[0],
 ) -> Float[np.ndarray, "sizes"]:
     """Draw points uniformly from a cube of `cube` dimensions and find its most deceptive bars.
 
@@ -99,22 +102,25 @@ def largest_ratios(
 def simulate_table(clouds: int = CLOUDS) -> dict[str, dict[str, list[list[float]]]]:
     """Simulate every threshold of the table: metric, dimension, then rows of landmarks by columns of crowds.
 
-    About an hour for 100 clouds on one core.
+    About two hours for 100 clouds on one core.
     """
     tables: dict[str, dict[str, list[list[float]]]] = {}
-    dimensions: dict[Metric, tuple[int, ...]] = {"geodesic": (1, 2), "euclidean": (0, 1, 2)}
     totals = sorted({count * crowd for count in LANDMARKS[1] for crowd in CROWDS})
-    with tqdm(total=len(dimensions) * len(totals), desc="null", unit="size") as progress:
-        for metric, wanted in dimensions.items():
+    kinds: list[tuple[str, Metric, int]] = [(f"geodesic_{k}", "geodesic", k) for k in NEIGHBOURS]
+    kinds.append(("euclidean", "euclidean", 0))
+    with tqdm(total=len(kinds) * len(totals), desc="null", unit="size") as progress:
+        for name, metric, neighbours in kinds:
+            wanted = (1, 2) if metric == "geodesic" else (0, 1, 2)
             found: dict[tuple[int, int, int], float] = {}
             for points in totals:
                 sizes = [(d, count) for d in wanted for count in LANDMARKS[d] if points / count in CROWDS]
-                worst = _worst_quantiles(metric, points, sizes, clouds, NEIGHBOURS)
+                # No point has more neighbours than there are others.
+                worst = _worst_quantiles(metric, max(points, neighbours + 1), sizes, clouds, neighbours)
                 found |= {(d, count, points): value for (d, count), value in zip(sizes, worst, strict=True)}
                 progress.update()
             for d in wanted:
                 values = [[found[d, count, count * crowd] for crowd in CROWDS] for count in LANDMARKS[d]]
-                tables.setdefault(metric, {})[str(d)] = np.round(values, 4).tolist()
+                tables.setdefault(name, {})[str(d)] = np.round(values, 4).tolist()
     return tables
 
 
@@ -141,8 +147,8 @@ def _simulated(metric: Metric, dimension: int, points: int, landmarks: int, neig
 @cache
 def _table() -> dict[str, dict[int, Float[np.ndarray, "landmarks crowds"]]]:
     return {
-        metric: {int(dimension): np.array(rows) for dimension, rows in tables.items()}
-        for metric, tables in json.loads(TABLE.read_text(encoding="utf-8")).items()
+        name: {int(dimension): np.array(rows) for dimension, rows in tables.items()}
+        for name, tables in json.loads(TABLE.read_text(encoding="utf-8")).items()
     }
 
 

@@ -15,6 +15,7 @@ from cogmap.graph.neighbour_graph import checked_graph
 from cogmap.graph.points import checked_cloud
 from cogmap.inputs import check_choice
 from cogmap.shape import betti_thresholds, rips
+from cogmap.shape.resolution import Over, doubt
 
 Metric = Literal["geodesic", "euclidean", "precomputed"]
 
@@ -44,6 +45,13 @@ class Betti:
     points: int
     """How many distinct points the landmarks were taken from."""
     metric: Metric
+    reasons: tuple[str, ...]
+    """Why a number is not resolved, in words; empty where it is."""
+
+    @property
+    def resolved(self) -> tuple[bool, ...]:
+        """Whether each number is sure as far as the cloud can tell (`resolution.doubt`)."""
+        return tuple(not reason for reason in self.reasons)
 
     @property
     def ratios(self) -> tuple[Float[np.ndarray, "_"], ...]:
@@ -69,6 +77,7 @@ class Betti:
                 f"H{dimension}: {number} bars with π = death/birth over {self.thresholds[dimension]:.2f} "
                 f"({self.votes[dimension]} of {self.draws} draws, {self.landmarks[dimension]} landmarks); "
                 f"largest π: {largest}"
+                + (f"; unresolved: {reason}" if (reason := self.reasons[dimension]) else "")
             )
         return "\n".join(lines)
 
@@ -81,9 +90,15 @@ class _Found(NamedTuple):
     landmarks: int
 
     @property
-    def number(self) -> int:
+    def over(self) -> Over:
+        """π over the threshold; of an infinite one only infinite bars count."""
         found = rips.ratios(self.bars)
-        return int(np.count_nonzero((found > self.threshold) | np.isinf(found)))
+        endless = np.full_like(found, np.inf)
+        return np.asarray(np.divide(found, self.threshold, out=endless, where=np.isfinite(found)))
+
+    @property
+    def number(self) -> int:
+        return int(np.count_nonzero(self.over > 1))
 
 
 def betti(
@@ -93,6 +108,7 @@ def betti(
     max_dimension: int = 2,
     seed: int = 0,
     neighbours: int = 15,
+    check: int | None = 25,
     landmarks: tuple[int, int] = (400, 150),
     draws: int = 3,
 ) -> Betti:
@@ -102,6 +118,11 @@ def betti(
     gives bars; a bar counts when π = death / birth exceeds what clouds without holes reach by chance when
     seen in the same way (`betti_thresholds.threshold`). This is repeated from `draws` random first landmarks,
     and each Betti number is the majority's, the smallest of a tie.
+
+    A number is `resolved` when in every draw the bars that count stand well over the threshold and the next
+    well under it, and a graph of `check` neighbours counts as many (`resolution.doubt`). None of this can
+    expose a real short cut: where two places look alike the cloud itself has another shape. A second sense
+    can (`cogmap.evaluation.homology_of_map`).
 
     In the geodesic metric the pieces are those of the neighbour graph. In the others a piece is what a gap
     wider than the threshold sets apart, if it holds at least 1 % of the points; else it is left out.
@@ -121,6 +142,9 @@ def betti(
         Chooses the first landmark of every draw.
     neighbours
         Of every point in the neighbour graph; 15, because fewer make false loops.
+    check
+        Neighbours of every point in a second graph, which is looked at once and must tell the same; None
+        looks at no other. Without effect where no neighbours are sought.
     landmarks
         How many for pieces and loops, and how many of these for voids.
     draws
@@ -132,16 +156,20 @@ def betti(
         For NaN, wrong shapes, asymmetric or negative distances, an unknown metric, too few points.
     """
     _check_options(metric, max_dimension, landmarks, draws)
-    space = _metric_space(X, metric, neighbours)
+    space, *others = _metric_spaces(X, metric, (neighbours,) if check is None else (neighbours, check))
     judged: betti_thresholds.Metric = "geodesic" if metric == "geodesic" or sp.issparse(X) else "euclidean"
     wanted = [landmarks[dimension == 2] for dimension in range(max_dimension + 1)]
     starts = np.random.default_rng(seed).integers(len(space), size=draws)
+    looks = [(space, neighbours, int(start)) for start in starts]
+    looks += [(other, check, int(starts[0])) for other in others if check is not None]
     # Draws and dimensions know nothing of each other; of paths all cores take care for each draw.
     on_all_cores = Parallel(cpu_count(), backend="threading")
-    spreads = on_all_cores(delayed(rips.farthest_points)(space, max(wanted), int(start)) for start in starts)
+    spreads = on_all_cores(
+        delayed(rips.farthest_points)(seen, max(wanted), start) for seen, _, start in looks
+    )
     tasks = []
-    for spread in spreads:
-        distances = space.among(spread.indices)
+    for (seen, around, _), spread in zip(looks, spreads, strict=True):
+        distances = seen.among(spread.indices)
         for dimension, count in enumerate(wanted):
             # Here, because a threshold that must be simulated is kept for the draws that follow.
             limit = betti_thresholds.threshold(
@@ -149,13 +177,25 @@ def betti(
                 dimension,
                 points=len(space),
                 landmarks=min(count, len(distances)),
-                neighbours=neighbours,
+                neighbours=around,
             )
             held = spread.held if judged == "euclidean" and dimension == 0 else None
             tasks.append(delayed(_find)(distances[:count, :count], dimension, limit, held))
     found = on_all_cores(tasks)
-    by_dimension = (tuple(found[dimension :: len(wanted)]) for dimension in range(len(wanted)))
-    chosen, votes = zip(*map(_majority, by_dimension), strict=True)
+    by_dimension = [tuple(found[dimension :: len(wanted)]) for dimension in range(len(wanted))]
+    chosen, votes = zip(*(_majority(items[:draws]) for items in by_dimension), strict=True)
+    reasons = tuple(
+        doubt(
+            dimension,
+            item.number,
+            [draw.over for draw in items[:draws]],
+            [
+                (around, other.over)
+                for other, (_, around, _) in zip(items[draws:], looks[draws:], strict=True)
+            ],
+        )
+        for dimension, (item, items) in enumerate(zip(chosen, by_dimension, strict=True))
+    )
     return Betti(
         numbers=tuple(found.number for found in chosen),
         bars=tuple(found.bars for found in chosen),
@@ -165,6 +205,7 @@ def betti(
         landmarks=tuple(found.landmarks for found in chosen),
         points=len(space),
         metric=metric,
+        reasons=reasons,
     )
 
 
@@ -207,9 +248,10 @@ def _over(found: Float[np.ndarray, "bars"], threshold: float, which: int) -> flo
     return float(found[which] / threshold) if len(found) and np.isfinite(threshold) else None
 
 
-def _metric_space(
-    X: Num[np.ndarray, "points *features"] | sp.csr_array, metric: Metric, neighbours: int
-) -> rips.Space:
+def _metric_spaces(
+    X: Num[np.ndarray, "points *features"] | sp.csr_array, metric: Metric, counts: tuple[int, ...]
+) -> list[rips.Space]:
+    """Give the cloud its metric, and with numbers of neighbours to choose from, one by each."""
     if sp.issparse(X):
         if metric != "precomputed":
             raise CogmapError(
@@ -218,12 +260,14 @@ def _metric_space(
             )
         graph = checked_graph(X)
         _check_enough(graph.shape[0])
-        return rips.along(graph, neighbours)
+        return [rips.along(graph, counts[0])]
     if metric == "precomputed":
-        return rips.Given(_checked_distances(X))
+        return [rips.Given(_checked_distances(X))]
     X = np.unique(np.asarray(checked_cloud(X)), axis=0)
     _check_enough(len(X))
-    return rips.geodesic(X, neighbours) if metric == "geodesic" else rips.euclidean(X)
+    # What has enough points for the first number and too few for the second is looked at once.
+    counts = (counts[0], *(count for count in counts[1:] if count < len(X)))
+    return [*rips.geodesics(X, counts)] if metric == "geodesic" else [rips.euclidean(X)]
 
 
 def _checked_distances(X: Num[np.ndarray, "points *features"]) -> Float[np.ndarray, "points points"]:

@@ -10,7 +10,7 @@ from gudhi.sklearn import RipsPersistence
 from jaxtyping import Float, Int
 from scipy.spatial.distance import cdist
 
-from cogmap.graph.neighbour_graph import lengthen_shortcuts, neighbour_graph
+from cogmap.graph.neighbour_graph import lengthen_shortcuts, neighbour_graphs
 from cogmap.graph.shortest_paths import Paths
 
 Bars = Float[np.ndarray, "_ 2"]
@@ -74,7 +74,13 @@ def euclidean(X: Float[np.ndarray, "points features"]) -> Space:
 
 def geodesic(X: Float[np.ndarray, "points features"], neighbours: int) -> Paths:
     """Shortest paths in the neighbour graph, shunning its shortcuts; infinite between its pieces."""
-    return along(neighbour_graph(X, neighbours), neighbours)
+    (space,) = geodesics(X, (neighbours,))
+    return space
+
+
+def geodesics(X: Float[np.ndarray, "points features"], counts: Sequence[int]) -> list[Paths]:
+    """Shortest paths in the graphs of several numbers of neighbours, as `geodesic`."""
+    return [along(*found) for found in zip(neighbour_graphs(X, counts), counts, strict=True)]
 
 
 def along(graph: sp.csr_array, neighbours: int) -> Paths:

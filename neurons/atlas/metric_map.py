@@ -6,6 +6,7 @@ import torch
 from jaxtyping import Bool, Complex, Float
 from torch import Tensor, nn
 
+from neurons.angles import wrap_angle
 from neurons.layers.place_cells import PlaceCells
 
 
@@ -84,8 +85,7 @@ class MetricMap(nn.Module):
     def forward(self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]) -> MetricReading:
         """Tell the position of smells and the offset of the compass there."""
         share, patches = _patches(place, log_odours)
-        turn = torch.atan2(share @ self.offsets.sin(), share @ self.offsets.cos())
-        return MetricReading(patches @ self.positions, turn)
+        return MetricReading(patches @ self.positions, self._offset(share))
 
     def partial_fit(
         self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"], headings: Float[Tensor, "views"]
@@ -93,12 +93,12 @@ class MetricMap(nn.Module):
         """Add the next views of a walk, in order; they follow those of the last call."""
         walk = torch.cat([self.recent, torch.cat([log_odours, headings[:, None]], dim=1)])
         self.recent = walk[-self.lag :].clone()
-        straight, direction = self._directions(walk[:, -1])
+        share, patches = _patches(place, walk[:, :-1])
+        straight, direction = self._directions(walk[:, -1] + self._offset(share))
         # blocks of many times the lag, as displacements that overlap are not independent; short against a
         # walk, so that both halves see all of the room
         half = (self.seen + torch.arange(len(straight), device=straight.device)) // 128 % 2
         self.seen += len(straight)
-        share, patches = _patches(place, walk[:, :-1])
         moved = patches[self.lag :] - patches[: -self.lag]
         # the middle of the way: its views are not those whose errors the displacement holds
         under = share[1:-1].unfold(0, self.lag - 1, 1).mean(dim=2)
@@ -126,7 +126,7 @@ class MetricMap(nn.Module):
         if not self.diagnosis():
             positions, turns = self._evidence(slice(0, 2)).solve(self.ridge)
             self.positions = torch.view_as_real(positions).float()
-            self.offsets = turns.angle().float()
+            self.offsets = wrap_angle(self.offsets + turns.angle().float())
 
     def diagnosis(self) -> str:
         """Say why nothing is learnt, or nothing when it is."""
@@ -143,6 +143,14 @@ class MetricMap(nn.Module):
                 "show it longer walks, in order"
             )
         return ""
+
+    def begin_again(self) -> None:
+        """Forget the sums: what follows is learnt on headings that are corrected by what is known by now."""
+        for sums in (self.spread, self.ahead, self.shared, self.counted, self.seen):
+            sums.zero_()
+
+    def _offset(self, share: Float[Tensor, "views cells"]) -> Float[Tensor, "views"]:
+        return torch.atan2(share @ self.offsets.sin(), share @ self.offsets.cos())
 
     def _directions(
         self, headings: Float[Tensor, "views"]

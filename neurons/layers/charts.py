@@ -1,4 +1,4 @@
-"""Charts of the view manifold: competing centres, each with tangents learnt from what it wins."""
+"""Charts of the view manifold: centres that compete for what is seen and smelt, each with tangents of sight."""
 
 from typing import NamedTuple
 
@@ -27,17 +27,25 @@ class NearestCharts(NamedTuple):
 class Charts(nn.Module):
     """Competitive local PCA: K centres C_k tile the codes, each with tangents U_k along the manifold.
 
-    A view z excites its m nearest centres. The centre of rank r learns with h = exp(−2 r / m): C_k moves to
-    the running mean of h z, and U_k follows Sanger's rule on the residuals z − C_k, normalised by their
-    variance as in `neurons.layers.sanger.Sanger`. `freeze` makes the tangents orthonormal; after it
-    nothing here changes any more.
+    A view z, where o was smelt (log odour), excites its m nearest charts by
+
+        d_k² = |z − C_k|² + λ² |o − a_k|²,        λ² = κ² median |z − C_1|² / median |o − a_1|²,
+
+    1 the winner: smell keeps places apart that look alike, and where one place is seen its weight λ is too
+    small to move a border. The medians are running ones over the winners of an epoch: neither the order of
+    views nor the noise of the nose need be known. The chart of rank r learns with h = exp(−2 r / m): C_k and a_k
+    move to the running means of h z and h o, and U_k follows Sanger's rule on the residuals z − C_k,
+    normalised by their variance as in `neurons.layers.sanger.Sanger`. `freeze` makes the tangents
+    orthonormal; after it nothing here changes any more.
 
     Parameters
     ----------
-    charts, components
-        K and the length of a code.
+    charts, components, odorants
+        K and the lengths of a code and of a smell.
     generator
         Draws the initial tangents.
+    smell
+        κ, what the usual misfit of smell counts beside the usual misfit of sight; 0 lets sight alone compete.
 
     References
     ----------
@@ -46,24 +54,57 @@ class Charts(nn.Module):
     Kambhatla & Leen (1997), Dimension reduction by local principal component analysis. Neural Computation 9.
     """
 
-    def __init__(self, charts: int, components: int, *, generator: torch.Generator) -> None:
+    def __init__(
+        self,
+        charts: int,
+        components: int,
+        odorants: int,
+        *,
+        generator: torch.Generator,
+        smell: float = 0.5,
+    ) -> None:
         super().__init__()
+        self.smell = smell
         # orthonormal from the start, as Sanger's rule expects of rows that are to part
         draws = torch.randn(charts, components, DIMENSIONS, generator=generator)
         self.centres: Tensor = nn.Buffer(torch.zeros(charts, components))
+        self.smells: Tensor = nn.Buffer(torch.zeros(charts, odorants))
         self.tangents: Tensor = nn.Buffer(torch.linalg.qr(draws).Q.mT.contiguous())
         self.responsibility: Tensor = nn.Buffer(torch.zeros(charts))
         self.variances: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS))
         self.initialised: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
+        self.misfits: Tensor = nn.Buffer(torch.ones(2))
+        self.measured: Tensor = nn.Buffer(torch.zeros(()))
 
     def __len__(self) -> int:
         return len(self.centres)
 
-    def excite(self, codes: Float[Tensor, "views components"], winners: int) -> NearestCharts:
-        """Find the nearest centres of each code, nearest first."""
-        chart = self._nearest(codes, winners)
+    @property
+    def smell_weight(self) -> Float[Tensor, ""]:
+        """λ, units of code per unit of log odour; κ before any chart has won."""
+        sight, smell = self.misfits
+        weight: Tensor = self.smell * (sight / smell.clamp(min=1e-12)).sqrt()
+        return weight
+
+    @property
+    def points(self) -> Float[Tensor, "charts components_and_odorants"]:
+        """Give (C_k, λ a_k), between which distances are those of the competition."""
+        return torch.cat([self.centres, self.smell_weight * self.smells], dim=1)
+
+    def excite(
+        self,
+        codes: Float[Tensor, "views components"],
+        winners: int,
+        log_odours: Float[Tensor, "views odorants"] | None = None,
+    ) -> NearestCharts:
+        """Find the nearest charts of each view, nearest first; without smells, by sight alone."""
+        chart = self._nearest(codes, winners, log_odours)
         # subtracting codes directly keeps the digits that |c|² − 2 z·c loses near a centre
-        return NearestCharts(chart, self.residuals(codes, chart).square().sum(dim=2))
+        squared = self.residuals(codes, chart).square().sum(dim=2)
+        if log_odours is not None:
+            misfit = (log_odours[:, None] - rows_of(self.smells, chart)).square().sum(dim=2)
+            squared += self.smell_weight**2 * misfit
+        return NearestCharts(chart, squared)
 
     def coordinates(
         self, codes: Float[Tensor, "views components"], chart: Int[Tensor, "views winners"]
@@ -78,38 +119,62 @@ class Charts(nn.Module):
         """Differences z − C_k of each code from the charts it excites."""
         return codes[:, None] - rows_of(self.centres, chart)
 
-    def partial_fit(self, codes: Float[Tensor, "views components"], *, winners: int, window: float) -> None:
-        """Let a batch of codes compete.
+    def partial_fit(
+        self,
+        codes: Float[Tensor, "views components"],
+        log_odours: Float[Tensor, "views odorants"],
+        *,
+        winners: int,
+        window: float,
+    ) -> None:
+        """Let a batch of views compete.
 
-        The first K codes ever seen, over as many batches as it takes, become the centres; the rest compete.
-        `winners` is m; `window` is how many views a centre remembers when it averages.
+        The first K views ever seen, over as many batches as it takes, become the charts; the rest compete.
+        `winners` is m; `window` is how many views a chart remembers when it averages.
         """
-        initialised = int(self.initialised)
-        fresh, rest = codes[: len(self) - initialised], codes[len(self) - initialised :]
-        self.centres[initialised : initialised + len(fresh)] = fresh
-        self.initialised += len(fresh)
-        if len(rest):
-            self._compete(rest, winners=winners, window=window)
+        first = int(self.initialised)
+        count = min(len(codes), len(self) - first)
+        self.centres[first : first + count] = codes[:count]
+        self.smells[first : first + count] = log_odours[:count]
+        self.initialised += count
+        if count < len(codes):
+            self._compete(codes[count:], log_odours[count:], winners=winners, window=window)
 
     def grow(self, overlapping: Int[Tensor, "edges 2"], count: int) -> None:
         """Add so many charts, halfway between those of the given pairs that lie farthest apart."""
         one, other = overlapping.T
-        length = (self.centres[one] - self.centres[other]).norm(dim=1)
+        length = (self.points[one] - self.points[other]).norm(dim=1)
         longest = length.topk(min(count, len(length))).indices
         one, other = one[longest], other[longest]
         self.centres = torch.cat([self.centres, (self.centres[one] + self.centres[other]) / 2])
+        self.smells = torch.cat([self.smells, (self.smells[one] + self.smells[other]) / 2])
         self.tangents = torch.cat([self.tangents, self.tangents[one]])
         self.responsibility = torch.cat([self.responsibility, self.responsibility.new_zeros(len(longest))])
         self.variances = torch.cat([self.variances, self.variances.new_zeros(len(longest), DIMENSIONS)])
         self.initialised.fill_(len(self.centres))
 
-    def _nearest(self, codes: Float[Tensor, "views components"], winners: int) -> Int[Tensor, "views _"]:
+    def _nearest(
+        self,
+        codes: Float[Tensor, "views components"],
+        winners: int,
+        log_odours: Float[Tensor, "views odorants"] | None,
+    ) -> Int[Tensor, "views _"]:
+        points, views = self.centres, codes
+        if log_odours is not None:
+            points, views = self.points, torch.cat([codes, self.smell_weight * log_odours], dim=1)
         # |z − c|² less |z|², which is the same for all charts: one product for the batch
-        squared = torch.addmm(self.centres.square().sum(dim=1), codes, self.centres.T, alpha=-2.0)
+        squared = torch.addmm(points.square().sum(dim=1), views, points.T, alpha=-2.0)
         return squared.topk(min(winners, len(self)), dim=1, largest=False).indices
 
-    def _compete(self, codes: Float[Tensor, "views components"], *, winners: int, window: float) -> None:
-        chart = self._nearest(codes, winners)
+    def _compete(
+        self,
+        codes: Float[Tensor, "views components"],
+        log_odours: Float[Tensor, "views odorants"],
+        *,
+        winners: int,
+        window: float,
+    ) -> None:
+        chart = self._nearest(codes, winners, log_odours)
         # the last of m winners learns about e⁻² as much as the first, whatever m is
         h = torch.exp(-2.0 * torch.arange(chart.shape[1], device=codes.device) / chart.shape[1])
         # only what has won is touched: a third of the charts, and of the memory
@@ -124,7 +189,9 @@ class Charts(nn.Module):
         rate = 1 / self.responsibility[won]
         tangents = rows_of(self.tangents, won)
         # from centres before they move: all that follows is of one state
-        residual = self.residuals(codes, chart).flatten(0, 1)
+        residuals, misfits = self.residuals(codes, chart), log_odours[:, None] - rows_of(self.smells, chart)
+        self._measure(residuals[:, 0], misfits[:, 0], window)
+        residual, misfit = residuals.flatten(0, 1), misfits.flatten(0, 1)
         y = torch.einsum("ndc,nc->nd", rows_of(tangents, flat), residual)
         weighted = weight[:, None] * y
         shift = codes.new_zeros(len(won), residual.shape[1]).index_add_(0, flat, weight[:, None] * residual)
@@ -133,6 +200,8 @@ class Charts(nn.Module):
             0, flat, weighted[:, :, None] * y[:, None]
         )
         self.centres.index_add_(0, won, rate[:, None] * shift)
+        drift = codes.new_zeros(len(won), misfit.shape[1]).index_add_(0, flat, weight[:, None] * misfit)
+        self.smells.index_add_(0, won, rate[:, None] * drift)
         drive = self.variances[won][:, :, None] * tangents
         # sums over what was won, not means yet: one multiplication by `rate` below makes means of all terms
         decay = torch.tril(cross, diagonal=-1) @ tangents
@@ -142,6 +211,19 @@ class Charts(nn.Module):
         # views at its very centre drive a chart nowhere: it keeps the tangents that it was born with
         drive *= (1 / length)[:, :, None]
         self.tangents.index_copy_(0, won, torch.where(length[:, :, None] > 0, drive, tangents))
+
+    def _measure(
+        self,
+        residuals: Float[Tensor, "views components"],
+        misfits: Float[Tensor, "views odorants"],
+        window: float,
+    ) -> None:
+        """Keep running medians of the squared misfits of the winners, which say what smell is to count."""
+        # a median, as views won by a place that only looks alike smell of another
+        squares = torch.stack([each.square().sum(dim=1).median() for each in (residuals, misfits)])
+        self.measured *= max(0.0, 1 - len(residuals) / window)
+        self.measured += len(residuals)
+        self.misfits += len(residuals) / self.measured * (squares - self.misfits)
 
     def freeze(self) -> None:
         """Make the tangents of each chart orthonormal."""

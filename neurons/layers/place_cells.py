@@ -18,8 +18,9 @@ BLOCK = 256
 class PlaceCells(nn.Module):
     """Competitive learning on log odour, then afferents from sight.
 
-    Each smell o is learnt by the nearest units: c_i is the running mean and Σ_i the running covariance of
-    what unit i has won, so that fields follow the geometry of the smells. Its tuning is
+    Each smell o moves the nearest unit alone, so that units spread as evenly as they can, and is learnt by a
+    few more, so that fields overlap: c_i is the running mean of what unit i was nearest to, and Σ_i the
+    running covariance about it of what it was among the nearest to. Fields follow the geometry of the smells:
 
         r_i(o) = peak · exp(−½ (o − c_i)ᵀ Σ_i⁻¹ (o − c_i)).
 
@@ -45,6 +46,7 @@ class PlaceCells(nn.Module):
         self.centres: Tensor = nn.Buffer(torch.zeros(cells, odorants))
         # not 0: a unit that never won would have a field without width
         self.covariances: Tensor = nn.Buffer(torch.eye(odorants).repeat(cells, 1, 1))
+        self.wins: Tensor = nn.Buffer(torch.zeros(cells))
         self.responsibility: Tensor = nn.Buffer(torch.zeros(cells))
         self.initialised: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self.branches: Tensor = nn.Buffer(torch.ones(charts, cells, dtype=torch.bool))
@@ -55,8 +57,8 @@ class PlaceCells(nn.Module):
     ) -> None:
         """Learn from a batch of smells; the first smells become the centres.
 
-        The nearest `winners` units learn from each, which sets how much neighbouring fields overlap. `window`
-        is how many views a unit remembers when it averages.
+        The nearest unit moves; the nearest `winners` learn how wide they are, which sets how much neighbouring
+        fields overlap. `window` is how many views a unit remembers when it averages.
         """
         cells = len(self.centres)
         initialised = int(self.initialised)
@@ -82,8 +84,12 @@ class PlaceCells(nn.Module):
         fed = torch.zeros_like(self.responsibility).index_add_(0, flat, distance.new_ones(len(flat)))
         drawn = torch.zeros_like(self.covariances).index_add_(0, flat, spread)
         self.covariances += rate[:, None, None] * (drawn - fed[:, None, None] * self.covariances)
-        shift = torch.zeros_like(self.centres).index_add_(0, flat, deviation.flatten(0, 1))
-        self.centres += rate[:, None] * shift
+        # the nearest alone: units that learn alike are drawn to one spot, and leave holes beside it
+        nearest = unit[:, 0]
+        self.wins *= max(0.0, 1 - len(log_odours) / window)
+        self.wins.index_add_(0, nearest, distance.new_ones(len(nearest)))
+        shift = torch.zeros_like(self.centres).index_add_(0, nearest, deviation[:, 0])
+        self.centres += (1 / self.wins.clamp(min=1e-6))[:, None] * shift
 
     def disambiguate(
         self,

@@ -34,6 +34,8 @@ PLATFORMS = {
     "plus_maze": 4 * 2 * 0.5 + 0.5**2,
     "white_rectangle": 12,
     "blue_wall": 12,
+    "cue_square": 9,
+    "cue_cylinder": 16 * 1.5**2 * np.sin(np.pi / 16),
 }
 FREE_AREAS = {
     "open_field": FREE[0] * FREE[1],
@@ -48,8 +50,11 @@ FREE_AREAS = {
     "plus_maze": 4.14 * 0.14 * 2 - 0.14**2,
     "white_rectangle": FREE[0] * FREE[1],
     "blue_wall": FREE[0] * FREE[1],
+    "cue_square": 2.64**2,
+    "cue_cylinder": 32 * (1.5 * np.cos(np.pi / 32) - RADIUS) ** 2 * np.tan(np.pi / 32),
 }
 HOLES = {"pillar": 1, "two_pillars": 2, "obstacles": 2}
+CUES = ("cue_square", "cue_cylinder")
 
 
 @pytest.fixture(params=gallery())
@@ -63,7 +68,7 @@ def test_these_are_the_rooms() -> None:
 
 
 def test_size(room: Arena) -> None:
-    assert room.walkable.area == pytest.approx(PLATFORMS[room.name])
+    assert room.walkable.area == pytest.approx(PLATFORMS[room.name], rel=1e-3)
     if room.name in RECTANGLES:
         width, depth = RECTANGLES[room.name]
         assert {(w.start, w.end) for w in room.walls} == {
@@ -95,7 +100,7 @@ def test_walls_close_the_room(room: Arena) -> None:
 
 
 def test_no_two_things_look_alike(room: Arena) -> None:
-    if room.name in ("white_rectangle", "blue_wall"):
+    if room.name in ("white_rectangle", "blue_wall", *CUES):
         return
     materials = [wall.material for wall in room.walls]
     for solid in room.solids:
@@ -213,6 +218,22 @@ def test_one_wall_is_blue() -> None:
     ((before, after),) = differing
     assert before.model_copy(update={"material": "blue"}) == after
     assert blue.model_copy(update={"walls": white.walls, "name": white.name}) == white
+
+
+@pytest.mark.parametrize("name", CUES)
+def test_a_quarter_turn_moves_nothing_but_the_card(name: str, poses: np.ndarray) -> None:
+    room = Arena.load(name)
+    (card,) = room.solids
+    assert set(card.sides) == {"blue"}
+    assert room.walkable.equals(shapely.affinity.rotate(room.walkable, 90, (0, 0)))
+    bare = room.model_copy(update={"boxes": [], "blocks": []})
+    poses = poses * (0.7, 0.9, 1)
+    around = np.c_[-poses[:, 1], poses[:, 0], poses[:, 2] + np.pi / 2]
+    camera = Camera.panoramic(180, 30)
+    change = camera.render(bare, poses).astype(int) - camera.render(bare, around)
+    assert np.abs(change).mean() < 0.05
+    change = camera.render(room, poses).astype(int) - camera.render(room, around)
+    assert (np.abs(change).max(axis=(1, 2, 3)) > 50).all()
 
 
 def test_demonstrations_of_what_a_room_can_be() -> None:

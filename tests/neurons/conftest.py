@@ -62,7 +62,7 @@ def tiling(cylinder: Codes, poses: Callable[[int, int], Tensor]) -> tuple[Tensor
     generator = torch.Generator().manual_seed(1)
     walking = torch.eye(4)[:2].expand(len(pose), 2, 4)
     exact = torch.cat([walking, _turning(pose)[:, None]], dim=1)
-    charts = Charts(len(pose), 4, generator=generator)
+    charts = Charts(len(pose), 4, 3, generator=generator)
     charts.centres = cylinder(pose)
     charts.tangents = torch.linalg.qr(torch.randn(len(pose), 3, 3, generator=generator)).Q @ exact
     return pose, charts

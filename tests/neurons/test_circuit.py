@@ -50,9 +50,8 @@ def test_recall_is_code_charts_and_readout() -> None:
     codes = strips @ seeing.code.weight.T
     nearest = torch.cdist(codes, seeing.charts.centres).argsort()[:, :8]
     assert torch.equal(recalled.excited.chart, nearest)
-    heading, odour = seeing.readout(seeing.charts, codes, seeing.readout.excite(seeing.charts, codes))
-    torch.testing.assert_close(recalled.heading, heading)
-    torch.testing.assert_close(recalled.odour, odour)
+    trusted = seeing.readout(seeing.charts, codes, seeing.readout.excite(seeing.charts, codes))
+    torch.testing.assert_close(recalled, trusted)
 
 
 @pytest.mark.parametrize(("most", "charts"), [(60, 60), (100, 80)])
@@ -61,10 +60,13 @@ def test_added_charts_keep_what_does_not_stand_on_charts(most: int, charts: int)
     grown.charts.centres = torch.randn(40, 8, generator=torch.Generator().manual_seed(1))
     for name in ("olfaction.gram", "readout.phases", "place.centres", "heading.afferents.activity"):
         grown.get_buffer(name).fill_(1.0)
+    grown.place.branches.fill_(False)  # noqa: FBT003
     grown.agreement.fill_(1.0)
     grown.add_charts()
     assert len(grown.charts) == charts
-    for name in ("code.weight", "heading.preferred", "place.centres", "metric_map.spread"):
+    assert (grown.place.centres == 1).all()
+    assert grown.place.branches.all()
+    for name in ("code.weight", "heading.preferred", "place.covariances", "metric_map.spread"):
         assert torch.equal(grown.get_buffer(name), fresh.get_buffer(name)), name
     for layer in (grown.olfaction.gram, grown.readout.phases, grown.place.afferents.activity):
         assert len(layer) == charts

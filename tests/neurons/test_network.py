@@ -40,6 +40,7 @@ def test_each_layer_learns_in_its_own_period_and_is_then_fixed(network: Network)
         "olfaction": "olfaction.",
         "cells": ("place.", "heading."),
         "metric_map": "metric_map.",
+        "corrected_metric_map": "metric_map.",
         "afferents": ("place.afferents.", "heading.afferents."),
     }
     for number, stage in enumerate(STAGES):

@@ -11,6 +11,7 @@ from neurons.errors import NeuronsError
 from neurons.merging import forked, merge
 from neurons.network import Network
 from neurons.stages import (
+    SMELL_FIRST,
     STAGES,
     AfferentStage,
     Batch,
@@ -174,10 +175,32 @@ def test_its_layers_are_made_again_when_charts_are_added() -> None:
 
 def test_names_and_buffers_are_those_of_the_network() -> None:
     names = [stage.name for stage in STAGES]
-    assert names == ["code", "charts", "olfaction", "cells", "metric_map", "afferents"]
+    assert names == [
+        "code",
+        "charts",
+        "olfaction",
+        "cells",
+        "metric_map",
+        "corrected_metric_map",
+        "afferents",
+    ]
+    first = [stage.name for stage in SMELL_FIRST]
+    assert first == ["smell", *("heading_cells" if name == "cells" else name for name in names)]
     buffers = network().state_dict()
-    for stage in STAGES:
+    for stage in {*STAGES, *SMELL_FIRST}:
         assert {*stage.sums, *stage.recent} <= buffers.keys()
+
+
+def test_place_cells_that_smell_first_are_left_alone_by_what_is_seen() -> None:
+    learner = network(SMELL_FIRST)
+    learn_until(learner, "code")
+    learner.advance_stage()
+    assert int(learner.place.initialised) == len(learner.place.centres)
+    taught, blank = deepcopy(learner.place), deepcopy(learner.heading.preferred)
+    learn_until(learner, "metric_map")
+    assert torch.equal(taught.centres, learner.place.centres)
+    assert torch.equal(taught.covariances, learner.place.covariances)
+    assert not torch.equal(blank, learner.heading.preferred)
 
 
 @pytest.mark.parametrize("winners", [(12, 4), (20, 2)])
@@ -187,9 +210,9 @@ def test_fewer_and_fewer_charts_learn_from_a_view(
     learner, asked = network(), []
     fit = learner.charts.partial_fit
 
-    def spy(codes: Tensor, *, winners: int, window: float) -> None:
+    def spy(codes: Tensor, log_odours: Tensor, *, winners: int, window: float) -> None:
         asked.append(winners)
-        fit(codes, winners=winners, window=window)
+        fit(codes, log_odours, winners=winners, window=window)
 
     monkeypatch.setattr(learner.charts, "partial_fit", spy)
     for progress in (0.0, 0.25, 0.5, 0.75, 1.0):
@@ -208,7 +231,8 @@ def test_the_nearest_charts_learn_the_smell_of_a_view(toy: Network) -> None:
         learner.readout.spacing.fill_(1e3)
         strips, smells = stream(1, 0)
         stage.learn(learner, Batch(stage.see(learner, strips), smells, progress=0.5, window=200.0))
-        nearest = torch.cdist(learner.code(strips), learner.charts.centres).argsort()[0, :winners]
+        view = torch.cat([learner.code(strips), learner.charts.smell_weight * smells], dim=1)
+        nearest = torch.cdist(view, learner.charts.points).argsort()[0, :winners]
         assert learner.olfaction.gram[:, 0, 0].nonzero().flatten().tolist() == sorted(nearest.tolist())
 
 

@@ -55,6 +55,10 @@ BARS: dict[str, list[tuple[str, str, Any]]] = {
         ("fused/position_p95_m", "≤", 0.15),
         ("fused/heading_median_deg", "≤", 2.5),
         ("fused/metric_map_r2", "≥", 0.99),
+        ("competition/cue_square/with_smell/trusted", "=", True),
+        ("competition/cue_square/with_smell/heading_median_deg", "≤", 2.0),
+        ("competition/cue_square/with_smell/position_median_m", "≤", 0.04),
+        ("competition/cue_square/sight_alone/trusted", "=", False),
     ],
     "slow_features": [
         ("brownian/slow_features/place_cells_passing", "≥", 0.8),
@@ -96,6 +100,20 @@ BARS: dict[str, list[tuple[str, str, Any]]] = {
         ("heading_follows_walls", "≥", 0.95),
         ("heading_shift_deg", "≥", 85),
         ("heading_shift_deg", "≤", 95),
+    ],
+    "cue_card": [
+        *[
+            (f"{room}/{key}", sign, bar)
+            for room in ("cue_square", "cue_cylinder")
+            for key, sign, bar in (
+                ("trusted", "=", True),
+                ("light/place_follows_card", "≥", 0.95),
+                ("light/heading_follows_card", "≥", 0.95),
+                ("light/heading_shift_deg", "≥", 85),
+                ("light/heading_shift_deg", "≤", 95),
+                ("dark/place_follows_card", "≤", 0.05),
+            )
+        ]
     ],
     "goals": [
         ("ring_betti", "=", [1, 1]),

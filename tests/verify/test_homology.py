@@ -11,8 +11,8 @@ import pytest
 pytestmark = pytest.mark.full
 
 SEEDS = (0, 1, 2)
-LEAST = 57
-"""Of 60."""
+LEAST = 54
+"""Of 60 that are resolved."""
 EXPECTED = {
     "open_field": ([1, 1, 0], [1, 1], [1, 0], [1, 1]),
     "furnished": ([1, 1, 0], [1, 1], [1, 0], [1, 1]),
@@ -30,8 +30,8 @@ def run(seed: int, out: Path) -> dict[str, Any]:
     return found
 
 
-def test_at_least_57_of_60_cases_are_right(tmp_path: Path) -> None:
-    right, nerves = [], []
+def test_all_cases_are_right_and_most_resolved(tmp_path: Path) -> None:
+    right, nerves, resolved = [], [], []
     for seed in SEEDS:
         rooms = run(seed, tmp_path / str(seed))["rooms"]
         assert rooms.keys() == EXPECTED.keys()
@@ -39,12 +39,17 @@ def test_at_least_57_of_60_cases_are_right(tmp_path: Path) -> None:
             for cloud, wanted in zip(CLOUDS, numbers, strict=True):
                 told = rooms[room][cloud]
                 right.append(told["betti"][: len(wanted)] == wanted)
+                resolved.append(all(told["resolved"][: len(wanted)]))
                 if "nerve" in told:
                     nerves.append(told["nerve"] == wanted)
                 sys.stdout.write(
                     f"seed {seed}, {room}, {cloud}: {told['betti']} of {wanted}, votes {told['votes']}, "
+                    f"unresolved {told['unresolved_because']}, "
                     f"margin {told['margin']:.2f}, nerve {told.get('nerve', 'not asked')}\n"
                 )
-    sys.stdout.write(f"{sum(right)} of {len(right)} right; nerves {sum(nerves)} of {len(nerves)}\n")
+    sys.stdout.write(
+        f"{sum(right)} of {len(right)} right, {sum(resolved)} resolved; nerves {sum(nerves)} of {len(nerves)}\n"
+    )
     assert len(right) == 60
-    assert sum(right) >= LEAST
+    assert sum(right) == 60
+    assert sum(resolved) >= LEAST

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from jaxtyping import Float
 
-from arena import Arena, Brownian, Camera, Recording
-from cogmap.cells import RateMaps, Tuning, bin_edges, mean_vectors, rate_maps, tuning_curves
+from arena import Arena, Brownian, Camera, Nose, Recording
 from cogmap.errors import CogmapError
-from cogmap.evaluation.ground_truth import map_correlations
+from cogmap.evaluation.cue_control import CueControl
 from cogmap.evaluation.populations import grow_map, perceive, trust_report
 from cogmap.experiments import Conditions, Result, experiment
+from cogmap.map.activity import Activity
+from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.plots import plot_examples
 
 PLATFORM, ROOM = 1.5, 2.5
@@ -21,6 +22,36 @@ PLATFORM, ROOM = 1.5, 2.5
 CORNERS = ((-1, -1), (1, -1), (1, 1), (-1, 1))
 SOURCES = ((-1.2, -1.0), (1.2, 0.6), (0.9, -1.2))
 """m; no turn of the room brings them to the same places."""
+FAINT = Nose(noise=0.5)
+"""Smells so faint that a sniff is off by half."""
+
+
+class Turn(NamedTuple):
+    """A map of a room, and its cells before and after all that is seen there has turned by a quarter."""
+
+    cmap: CognitiveMap
+    place: dict[str, CueControl]
+    """By what is sensed, as are those of heading."""
+    heading: dict[str, CueControl]
+
+    @property
+    def correlations(self) -> pd.DataFrame:
+        """`CueControl.correlations` of the place cells, a row a cell and what is sensed."""
+        return pd.concat(
+            [found.correlations.assign(sensed=sensed) for sensed, found in self.place.items()],
+            ignore_index=True,
+        )
+
+    @property
+    def shifts(self) -> pd.DataFrame:
+        """How far each head-direction cell has turned, a row a cell and what is sensed."""
+        return pd.concat(
+            [
+                pd.DataFrame({"shift_deg": found.shift_deg, "sensed": sensed})
+                for sensed, found in self.heading.items()
+            ],
+            ignore_index=True,
+        )
 
 
 @experiment(room="open_field", views=17_000, takes=("nose", "motion", "camera", "body", "map"))
@@ -29,54 +60,40 @@ def cue_rotation(conditions: Conditions) -> Result:
 
     The walls are of the materials of the first four of the room that is given. A place cell follows the walls
     when its map correlates better with the learnt one turned by a quarter than with the learnt one itself. In
-    the light cells fire by sight, in the dark place cells by smell and heading cells not at all;
-    `heading_shift_deg` is the median change of the preferred direction, counter-clockwise.
+    the light cells fire by sight, in the dark place cells by smell and heading cells not at all; with `faint`
+    smells a sniff in the dark is off by half. `heading_shift_deg` is the median change of the
+    preferred direction, counter-clockwise.
     """
-    camera = Camera.panoramic()
-    rooms = {turns: square_room(conditions.room, turns) for turns in (0, 1)}
-    walk, before, after = (
-        replace(conditions, room=rooms[turns], seed=conditions.seed + late).explore(
-            Brownian(), camera, fresh=late > 0
-        )
-        for turns, late in ((0, 0), (0, 1), (1, 2))
-    )
-    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
-    lit = [perceive(cmap, item.views) for item in (before, after)]
-    dark = [cmap.perceive(odours=item.odours) for item in (before, after)]
-    place = {
-        "light": [_tuning(lit[0].place, before), _tuning(lit[1].place, after)],
-        "dark": [_tuning(dark[0].place, before), _tuning(dark[1].place, after)],
-    }
-    heading = [_tuning(lit[0].heading, before), _tuning(lit[1].heading, after)]
-    table = pd.DataFrame(
-        {
-            f"{name}_{cue}": map_correlations(turned(cells[0].maps, turns), cells[1].maps)
-            for name, cells in place.items()
-            for cue, turns in (("walls", 1), ("smells", 0))
-        }
-    )
-    follows = pd.DataFrame({name: table[f"{name}_walls"] > table[f"{name}_smells"] for name in place})
-    shift = np.rad2deg(np.angle(mean_vectors(heading[1].curves) * mean_vectors(heading[0].curves).conj()))
+    rooms = square_room(conditions.room, 0), square_room(conditions.room, 1)
+    found = turn_what_is_seen(conditions, rooms, PLATFORM)
+    heading = found.heading["light"]
     figures = {
-        "heading_shift_deg": float(np.median(shift)),
-        "heading_follows_walls": float((abs(shift - 90) < 45).mean()),
+        "heading_shift_deg": float(np.median(heading.shift_deg)),
+        "heading_follows_walls": heading.directions_follow_sight,
     }
     return Result(
         metrics={
-            **{f"place_follows_walls_{name}": float(share) for name, share in follows.mean().items()},
-            **{f"correlation_{name}": float(found) for name, found in table.median().items()},
-            **({} if np.isnan(shift).any() else figures),
-            **trust_report(cmap),
+            **{
+                f"place_follows_walls_{sensed}": place.maps_follow_sight
+                for sensed, place in found.place.items()
+            },
+            **{
+                f"correlation_{sensed}_{cue}": median
+                for sensed, place in found.place.items()
+                for cue, median in zip(("walls", "smells"), place.median_correlations, strict=True)
+            },
+            **({} if np.isnan(heading.shift_deg).any() else figures),
+            **trust_report(found.cmap),
         },
-        tables={"place_cells": table, "heading_cells": pd.DataFrame({"shift_deg": shift})},
+        tables={"place_cells": found.correlations, "heading_cells": found.shifts},
         figures={
             "examples": plot_examples(
                 {
-                    "in the light, before": place["light"][0],
-                    "in the light, walls turned": place["light"][1],
-                    "in the dark, walls turned": place["dark"][1],
-                    "heading cells, before": heading[0],
-                    "heading cells, walls turned": heading[1],
+                    "in the light, before": found.place["light"].before,
+                    "in the light, walls turned": found.place["light"].after,
+                    "in the dark, walls turned": found.place["dark"].after,
+                    "heading cells, before": heading.before,
+                    "heading cells, walls turned": heading.after,
                 }
             )
         },
@@ -108,14 +125,38 @@ def square_room(room: Arena, turns: int) -> Arena:
     )
 
 
-def turned(maps: RateMaps, turns: int) -> RateMaps:
-    """Turn square maps by so many quarters counter-clockwise."""
-    # Row 0 is the lowest y, so that numpy's quarter turns go the other way.
-    return RateMaps(np.rot90(maps.rates, -turns, axes=(1, 2)), np.rot90(maps.occupancy, -turns), maps.edges)
+def turn_what_is_seen(conditions: Conditions, rooms: tuple[Arena, Arena], reach: float) -> Turn:
+    """Learn the first of two rooms, walk there again, then in the second, which looks turned by a quarter.
+
+    Cells are tuned as far from the origin as `reach` (m).
+    """
+    walk, *late = (
+        replace(conditions, room=rooms[order // 2], seed=conditions.seed + order).explore(
+            Brownian(), Camera.panoramic(), fresh=order > 0
+        )
+        for order in range(3)
+    )
+    walks = (late[0], late[1])
+    cmap = grow_map(walk, conditions.map, seed=conditions.seed)
+    before, after = (_by_sense(cmap, item, seed=conditions.seed) for item in walks)
+    place, heading = (
+        {
+            sensed: CueControl.of(
+                (getattr(before[sensed], cells), getattr(after[sensed], cells)), walks, reach
+            )
+            for sensed in before
+        }
+        for cells in ("place", "heading")
+    )
+    return Turn(cmap, place, heading)
 
 
-def _tuning(rates: Float[np.ndarray, "views cells"], walk: Recording) -> Tuning:
-    """Rate maps and tuning curves; a cell without a compass, of rate NaN, is silent."""
-    rates, poses = np.nan_to_num(rates), walk.require("poses")
-    edges = bin_edges(PLATFORM * np.array(CORNERS, dtype=float))
-    return Tuning(rate_maps(rates, poses[:, :2], edges=edges), tuning_curves(rates, poses[:, 2]))
+def _by_sense(cmap: CognitiveMap, walk: Recording, *, seed: int) -> dict[str, Activity]:
+    """Let a map look without a nose, smell in the dark, and smell what is faint in the dark."""
+    odours = walk.require("odours")
+    faint = FAINT.smell(odours.astype(float), walk.times, np.random.default_rng(seed))
+    return {
+        "light": perceive(cmap, walk.views),
+        "dark": cmap.perceive(odours=odours),
+        "faint": cmap.perceive(odours=faint),
+    }

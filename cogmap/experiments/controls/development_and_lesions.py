@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,7 +15,7 @@ from sklearn.metrics import pairwise_distances_argmin
 
 from cogmap.cells.measures.correlations import correlations
 from cogmap.evaluation.ground_truth import CellMetrics, GroundTruth, as_one_table
-from cogmap.evaluation.populations import perceive, trust_report
+from cogmap.evaluation.populations import grow_map, perceive, trust_report
 from cogmap.experiments import Conditions, Result, Trial, experiment, pose_columns
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.lesions import afferent_weights, lesioned, weights_of, with_blank_afferents
@@ -61,10 +63,13 @@ def development(
 
     `growth`: the afferents of a grown map are blanked, and learn from the same walk once more while smell and
     compass instruct them; both populations are measured on a fresh walk after ever more views.
-    `views_to_mature` is when nine tenths of the cells pass that pass in the end. `silencing`: shares of the
-    charts, drawn at random, never win again. `driven` cells fire from sight through their weights, `direct`
-    ones as their tuning demands for the recalled smell and phase; `agreement` is the median over cells of the
-    correlation of the two.
+    `views_to_mature` is when nine tenths of the cells pass that pass in the end. In this order both senses
+    begin at once, and place cells share out what sight recalls of smell. `smell_first` is the other order, an
+    infant's: place cells learn from smell alone, its `dark` course, before anything is seen; once charts and
+    compass have formed, its `growth` is measured as above. `silencing`: shares of the charts, drawn at
+    random, never win again. `driven` cells fire from sight through their weights, `direct` ones as their
+    tuning demands for the recalled smell and phase; `agreement` is the median over cells of the correlation
+    of the two.
 
     Positions are read from the rates of place cells by the decoder of `score`, headings from those of heading
     cells by linear regression of their cosine and sine; both know some 4,000 of the training views. Cells are
@@ -75,12 +80,23 @@ def development(
     step = max(1, len(walk) // 4000)
     truth = trial.truth._replace(train=trial.truth.train[::step])
     views = np.asarray(walk.views[::step]), trial.fresh.views
+    odours = walk.require("odours")[::step], trial.fresh.require("odours")
 
-    growing, growth, begun = with_blank_afferents(cmap), [], 0
-    for seen in [*(count for count in after if count < len(walk)), len(walk)]:
-        growing.partial_fit(walk.views[begun:seen], walk.require("odours")[begun:seen])
-        begun = seen
-        growth.append({"views": seen, **_driven(growing, views, truth).figures})
+    def course(infant: CognitiveMap, look: Callable[[CognitiveMap], Seen]) -> pd.DataFrame:
+        rows, begun = [], 0
+        for met in [*(count for count in after if count < len(walk)), len(walk)]:
+            infant.partial_fit(walk.views[begun:met], walk.require("odours")[begun:met])
+            begun = met
+            rows.append({"views": met, **look(infant).figures})
+        return pd.DataFrame(rows)
+
+    by_sight = partial(_driven, views=views, truth=truth)
+    parameters = {**conditions.map, "smell_first": True}
+    later = grow_map(walk, parameters, seed=conditions.seed)
+    newborn = CognitiveMap(**{"seed": conditions.seed, **parameters, "charts": 1, "epoch": len(walk)})
+    growth = course(with_blank_afferents(cmap), by_sight)
+    dark = course(newborn, partial(_smelling, odours=odours, truth=truth))
+    opened = course(with_blank_afferents(later), by_sight)
     order = np.random.default_rng(conditions.seed).permutation(cmap.charts)
     lesions = (lesioned(cmap, order[: round(share * len(order))]) for share in silent)
     silencing = [
@@ -91,7 +107,7 @@ def development(
     weights = {cells: afferent_weights(cmap, cells) for cells in POPULATIONS}
     centres = weights_of(cmap)["charts.centres"].numpy()
     preferred = trial.truth.train[pairwise_distances_argmin(centres, cmap.encode(walk.views))]
-    tables = {"growth": pd.DataFrame(growth), "silencing": pd.DataFrame(silencing)}
+    tables = {"growth": growth, "silencing": pd.DataFrame(silencing)}
     return Result(
         metrics={
             **trust_report(cmap),
@@ -101,13 +117,19 @@ def development(
                 cells: _agreement(getattr(driven, cells).rates, getattr(direct, cells).rates)
                 for cells in POPULATIONS
             },
-            "views_to_mature": {
-                cells: _mature(tables["growth"], f"{cells}_cells_passing") for cells in POPULATIONS
+            "views_to_mature": _mature_by_population(growth),
+            "smell_first": {
+                **trust_report(later),
+                "views_to_mature_in_the_dark": _mature(dark, "place_cells_passing"),
+                "views_to_mature": _mature_by_population(opened),
+                "dark": dark.to_dict("records"),
+                "growth": opened.to_dict("records"),
             },
             **{name: table.to_dict("records") for name, table in tables.items()},
         },
         tables={
             **tables,
+            "smell_first": pd.concat([dark.assign(sensed="smell"), opened.assign(sensed="sight")]),
             "cells": as_one_table(
                 {
                     f"{name}, {cells}": getattr(seen, cells)
@@ -121,11 +143,18 @@ def development(
         },
         figures={
             "afferents": plot_afferents(weights["place"], weights["heading"], preferred),
-            "courses": plot_courses(tables["growth"], tables["silencing"]),
+            "courses": plot_courses(
+                {
+                    "both senses at once: cells by sight": growth,
+                    "smell first: place cells in the dark": dark,
+                    "sight later: the same cells by sight": opened,
+                },
+                tables["silencing"],
+            ),
         },
         captions={
             "afferents": "Where the charts lie that a cell fires from, by the strength of their weights",
-            "courses": "How the cells come with views, and go with charts that fall silent",
+            "courses": "How the cells come with views, in two orders of the senses, and go with charts",
         },
     )
 
@@ -133,6 +162,14 @@ def development(
 def _driven(cmap: CognitiveMap, views: tuple[Any, Any], truth: GroundTruth) -> Seen:
     """Rates from sight, through the weights."""
     train, test = (perceive(cmap, batch) for batch in views)
+    return Seen((train.place, train.heading), truth.measure(test.place), truth.measure(test.heading))
+
+
+def _smelling(
+    cmap: CognitiveMap, odours: tuple[Float[np.ndarray, "_ odorants"], ...], truth: GroundTruth
+) -> Seen:
+    """Rates in the dark, by smell."""
+    train, test = (cmap.perceive(odours=batch) for batch in odours)
     return Seen((train.place, train.heading), truth.measure(test.place), truth.measure(test.heading))
 
 
@@ -151,6 +188,10 @@ def _direct(cmap: CognitiveMap, views: tuple[Any, Any], truth: GroundTruth) -> S
 def _agreement(one: Float[np.ndarray, "views cells"], other: Float[np.ndarray, "views cells"]) -> float:
     """Median over cells of the correlation of their rates, NaN without a cell that ever fires."""
     return float(np.nanmedian(correlations(one.T, other.T)))
+
+
+def _mature_by_population(growth: pd.DataFrame) -> dict[str, int]:
+    return {cells: _mature(growth, f"{cells}_cells_passing") for cells in POPULATIONS}
 
 
 def _mature(growth: pd.DataFrame, passing: str) -> int:

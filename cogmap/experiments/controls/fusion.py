@@ -2,11 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 from cogmap.evaluation.populations import competing_cells, trust_report
 from cogmap.experiments import Conditions, Result, Trial, experiment, show_cells
 
 
-@experiment(room="furnished", views=17_000, takes=("nose", "motion", "camera", "body", "map"))
+@experiment(
+    room="furnished",
+    views=17_000,
+    takes=("nose", "motion", "camera", "body", "map"),
+    extra_rooms=("cue_square",),
+)
 def fusion(conditions: Conditions) -> Result:
     """Compare cells that see, cells that smell, and cells that see what smell has taught them.
 
@@ -17,6 +25,10 @@ def fusion(conditions: Conditions) -> Result:
     cells; `position_median_m` of `olfaction_only` is read from the raw nose. `in_field_direction_vector` is
     the median over the cells that have a field. `seconds` are those of learning, by stage; `reason` and
     `metric_reason` say why the map is not to be trusted, or lays out no places.
+
+    `competition` is the other control: the same walks, learnt once with smell among what charts compete for
+    and once with sight alone there (`CognitiveMap(smell=0)`), here and where one card alone tells four equal
+    walls apart. Both maps learn place and heading from smell, and both fire from sight alone afterwards.
     """
     trial = Trial.of(conditions)
     truth, cmap = trial.truth, trial.cmap
@@ -30,6 +42,13 @@ def fusion(conditions: Conditions) -> Result:
         name: {**cells[name].place_figures, **cells[name].heading_figures}
         for name in ("vision only", "olfaction only")
     }
+    competition = {
+        item.conditions.room.name: {
+            "with_smell": _figures(item),
+            "sight_alone": _figures(replace(item, conditions=_without_smell(item.conditions))),
+        }
+        for item in (trial, *(Trial.of(replace(conditions, room=room)) for room in conditions.extra_rooms))
+    }
     return Result(
         {
             "vision_only": alone["vision only"],
@@ -41,6 +60,15 @@ def fusion(conditions: Conditions) -> Result:
                 "metric_reason": cmap.metric_reason_,
                 "seconds": {stage: round(spent, 3) for stage, spent in cmap.seconds_.items()},
             },
+            "competition": competition,
         },
         *show_cells(cells),
     )
+
+
+def _without_smell(conditions: Conditions) -> Conditions:
+    return replace(conditions, map={**conditions.map, "smell": 0.0})
+
+
+def _figures(trial: Trial) -> dict[str, Any]:
+    return {**trial.figures, **trust_report(trial.cmap)}

@@ -8,10 +8,9 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import pandas as pd
-import shapely
-from jaxtyping import Float
 
-from arena import Arena, Brownian, Camera, Disc
+from arena import Brownian, Camera
+from cogmap.evaluation.free_space import expected_betti
 from cogmap.evaluation.homology_of_map import homologies
 from cogmap.evaluation.populations import grow_map, perceive
 from cogmap.experiments import Conditions, Result, experiment
@@ -23,6 +22,8 @@ Numbers = tuple[int, ...]
 """Pieces, loops and, where they are asked for, voids."""
 
 
+ASKED = {"view_manifold": 3, "fused": 2, "place": 2, "heading": 2}
+"""How many Betti numbers of each cloud are compared with those of free space."""
 POPULATIONS = ("place", "heading")
 
 
@@ -43,6 +44,11 @@ class Case(NamedTuple):
     def right(self) -> bool:
         """Whether the numbers that are asked for are as expected."""
         return self.found is not None and self.found.numbers[: len(self.expected)] == self.expected
+
+    @property
+    def resolved(self) -> bool:
+        """Whether all the numbers that are asked for are sure."""
+        return self.found is not None and all(self.found.resolved[: len(self.expected)])
 
     @property
     def nerve_right(self) -> bool:
@@ -69,10 +75,11 @@ def homology(conditions: Conditions) -> Result:
     A room with h pillars on its platform leaves the body a plane with h holes, of Betti numbers [1, h], times
     the circle of its headings: [1, 1 + h, h] by Künneth's formula. The view manifold should have these
     numbers, the fused map the same pieces and loops, place cells those of the plane and head-direction cells
-    those of the circle (`expected_numbers`). `right` of the `cases` do, by the calibrated rule of `betti`;
-    each that does not is drawn by itself. `margin` is the least factor by which a bar would have to change to
-    be judged otherwise. Beside it the nerve of each population, which knows only who is active with whom:
-    `nerve_right` of `nerve_cases`.
+    those of the circle (`cogmap.evaluation.free_space`). `right` of the `cases` do, by the calibrated rule of
+    `betti`; each that does not is drawn by itself. `margin` is the least factor by which a bar would have to
+    change to be judged otherwise. `resolved` of them are sure (`betti`, `homologies`), and
+    `wrong_and_resolved` should be none. Beside it the nerve of each population, which knows only who is
+    active with whom: `nerve_right` of `nerve_cases`.
     """
     cases = [
         case
@@ -85,6 +92,8 @@ def homology(conditions: Conditions) -> Result:
         metrics={
             "cases": len(cases),
             "right": sum(case.right for case in cases),
+            "resolved": sum(case.resolved for case in cases),
+            "wrong_and_resolved": sum(case.resolved and not case.right for case in cases),
             "nerve_cases": len(populations),
             "nerve_right": sum(case.nerve_right for case in populations),
             "rooms": _by_room(cases, _figures),
@@ -111,30 +120,19 @@ def homology(conditions: Conditions) -> Result:
     )
 
 
-def expected_numbers(room: Arena, start: Float[np.ndarray, "2"]) -> dict[str, Numbers]:
-    """Tell what a body that starts there (m) should find, from the shape of the free space around it."""
-    pieces = shapely.get_parts(room.free_space(Disc().radius))
-    walked = min(pieces, key=lambda piece: float(piece.distance(shapely.Point(start))))
-    holes = len(walked.interiors)
-    return {
-        "view_manifold": (1, 1 + holes, holes),
-        "fused": (1, 1 + holes),
-        "place": (1, holes),
-        "heading": (1, 1),
-    }
-
-
 def _visit(conditions: Conditions) -> list[Case]:
     """Learn a map of one room and look at all that it knows."""
     walk = conditions.explore(Brownian(), Camera.panoramic())
     cmap = grow_map(walk, conditions.map, seed=conditions.seed)
     activity = perceive(cmap, walk.views)
-    found = homologies(cmap.encode(walk.views), activity, seed=conditions.seed)
+    smells = np.log(walk.require("odours"))
+    found = homologies(cmap.encode(walk.views), activity, smells, seed=conditions.seed)
     nerves = {name: population_nerve(getattr(activity, name)) for name in POPULATIONS if name in found}
-    expected = expected_numbers(conditions.room, walk.require("poses")[0, :2])
+    room = conditions.room
+    expected = expected_betti(room, walk.require("poses")[0, :2])
     return [
-        Case(conditions.room.name, name, numbers, found.get(name), nerves.get(name), cmap.reason_)
-        for name, numbers in expected.items()
+        Case(room.name, name, expected[name][:asked], found.get(name), nerves.get(name), cmap.reason_)
+        for name, asked in ASKED.items()
     ]
 
 
@@ -148,10 +146,11 @@ def _by_room(cases: list[Case], figure_of: Callable[[Case], T]) -> dict[str, dic
 
 def _figures(case: Case) -> dict[str, Any]:
     found = case.found
+    told = {"betti": "numbers", "votes": "votes", "resolved": "resolved", "unresolved_because": "reasons"}
     return {
         "expected": list(case.expected),
         "right": case.right,
-        **({} if found is None else {"betti": list(found.numbers), "votes": list(found.votes)}),
+        **({} if found is None else {key: list(getattr(found, name)) for key, name in told.items()}),
         "margin": case.margin,
         **({} if case.nerve is None else {"nerve": list(case.nerve.numbers)}),
         **({"reason": case.reason} if case.reason else {}),

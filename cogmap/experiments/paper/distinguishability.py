@@ -46,6 +46,7 @@ def distinguishability(conditions: Conditions, *, queries: int = 2000) -> Result
         metrics={
             **{f"confusion_{name}": float(item.nearest["confused"].mean()) for name, item in seen.items()},
             **{f"betti_{name}": list(item.shape.numbers) for name, item in seen.items()},
+            **{f"betti_resolved_{name}": list(item.shape.resolved) for name, item in seen.items()},
             **{f"betti_votes_{name}": list(item.shape.votes) for name, item in seen.items()},
         },
         tables={f"nearest_{name}": item.nearest for name, item in seen.items()},

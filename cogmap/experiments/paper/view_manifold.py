@@ -43,6 +43,7 @@ class ViewManifold(NamedTuple):
             "dimension": self.dimension,
             "betti": list(self.shape.numbers),
             "betti_votes": list(self.shape.votes),
+            "betti_resolved": list(self.shape.resolved),
             "betti_margin": min((over for over in accepted if over is not None), default=None),
             "betti_rejected": max((over for over in rejected if over is not None), default=None),
             "heading_resultant": float(abs(np.nanmean(np.exp(1j * turn)))),

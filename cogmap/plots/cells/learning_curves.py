@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import pandas as pd
 from matplotlib.figure import Figure
 
@@ -19,13 +21,15 @@ PANELS = {
 }
 
 
-def plot_courses(growth: pd.DataFrame, silencing: pd.DataFrame) -> Figure:
-    """Draw passing cells and errors against the views seen (above) and the charts silenced (below).
+def plot_courses(growth: Mapping[str, pd.DataFrame], silencing: pd.DataFrame) -> Figure:
+    """Draw passing cells and errors against the views met, a line of panels a course, and charts silenced.
 
     Parameters
     ----------
-    growth, silencing
-        Rows of `views` and of `silent` (share of charts), each with `place_cells_passing`,
+    growth
+        Rows of `views`, by the name of the course.
+    silencing
+        Rows of `silent` (share of charts), drawn below; all have `place_cells_passing`,
         `heading_cells_passing`, `place_coverage`, `position_median_m` and `heading_median_deg`.
 
     Raises
@@ -33,19 +37,20 @@ def plot_courses(growth: pd.DataFrame, silencing: pd.DataFrame) -> Figure:
     CogmapError
         Without a row.
     """
-    if growth.empty or silencing.empty:
-        raise CogmapError(f"{len(growth)} and {len(silencing)} rows; give at least one of each")
-    figure, panels = new_panels(11.0, 5.6, 2, len(PANELS))
-    lines = ((growth, "views", "views seen"), (silencing, "silent", "charts silenced (share)"))
-    for line, (rows, along, name) in zip(panels, lines, strict=True):
+    courses = {**growth, "charts fall silent": silencing}
+    if any(rows.empty for rows in courses.values()):
+        raise CogmapError(f"{[len(rows) for rows in courses.values()]} rows; give at least one of each")
+    figure, panels = new_panels(11.0, 2.8 * len(courses), len(courses), len(PANELS))
+    for line, (name, rows) in zip(panels, courses.items(), strict=True):
+        along, told = ("silent", "charts silenced (share)") if rows is silencing else ("views", "views met")
         for axes, (label, curves) in zip(line, PANELS.items(), strict=True):
-            tidy(axes, x=name, y=label)
+            tidy(axes, x=told, y=label, title=name if axes is line[0] else "")
             for column, (curve, colour, style) in curves.items():
                 points = rows[along], rows[column]
                 axes.plot(*points, style, color=colour, marker="o", markersize=3, label=curve)
             highest = max(float(rows[list(curves)].max().max()), 1e-9)
             axes.set_ylim(0, 1.05 if label.endswith("(share)") else 1.1 * highest)
-            if rows is growth:
+            if along == "views":
                 axes.set_xscale("log")
             tidy_legend(axes)
     return figure

@@ -22,8 +22,9 @@ def plot_barcode_grid(
     """Draw the largest loops and voids of every cloud as π = death / birth, a line of panels per room.
 
     Loops stand above voids. Bars that count are coloured, and the dashed line across them is what they must
-    exceed. The title of a panel tells the numbers found; where they are not as expected it is red and tells
-    those too. The panels of a column share their logarithmic axis.
+    exceed. The title of a panel tells the numbers found, those that are not resolved with a question mark;
+    where they are not as expected it is red and tells those too. The panels of a column share their
+    logarithmic axis.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ def plot_barcode_grid(
         column[-1].set_xlabel("π = death / birth, no unit", fontsize=SMALL, color=INK)
     for axes, room in zip(panels[:, 0], results, strict=True):
         axes.set_ylabel(room.replace("_", " "), fontsize=SMALL, color=INK)
-    title = "Betti numbers; loops (blue) above voids (violet), dashed what a bar must exceed to count"
+    title = "Betti numbers (? unresolved); loops (blue) above voids (violet), dashed what a bar must exceed"
     figure.suptitle(title, fontsize=SMALL + 1, color=INK)
     return figure
 
@@ -77,4 +78,5 @@ def _draw(axes: Axes, result: Betti | None, expected: tuple[int, ...], limit: fl
         draw_bars(axes, result, dimension, count, colour, first=first)
         rows = [first - 0.5, first + count - 0.5]
         axes.plot([result.thresholds[dimension]] * 2, rows, color=BAD, linewidth=1.2, linestyle="--")
-    return f"{list(result.numbers)}" + ("" if right else f", not {list(expected)}")
+    told = (f"{b}" if sure else f"{b}?" for b, sure in zip(result.numbers, result.resolved, strict=True))
+    return f"[{', '.join(told)}]" + ("" if right else f", not {list(expected)}")

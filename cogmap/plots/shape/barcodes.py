@@ -18,7 +18,8 @@ def plot_barcodes(results: Mapping[str, Betti], *, bars: int = 12) -> Figure:
     """Draw, for every result and dimension, the largest bars as π = death / birth against the threshold.
 
     One line of panels per result: loops (H₁) and voids (H₂). Bars that count are coloured; the dashed line is
-    what a bar must exceed. The axes of a dimension are logarithmic and the same for all results.
+    what a bar must exceed. Above each line stands what was found, and what of it is unresolved. The axes of a
+    dimension are logarithmic and the same for all results.
 
     Parameters
     ----------
@@ -53,8 +54,10 @@ def plot_barcodes(results: Mapping[str, Betti], *, bars: int = 12) -> Figure:
 
 def _summary(result: Betti) -> str:
     return ", ".join(
-        f"b{dimension} = {number} ({votes} of {result.draws} draws)"
-        for dimension, (number, votes) in enumerate(zip(result.numbers, result.votes, strict=True))
+        f"b{dimension} = {number} ({votes} of {result.draws} draws" + (")" if resolved else ", unresolved)")
+        for dimension, (number, votes, resolved) in enumerate(
+            zip(result.numbers, result.votes, result.resolved, strict=True)
+        )
     )
 
 

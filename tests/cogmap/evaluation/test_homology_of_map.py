@@ -1,7 +1,45 @@
 import numpy as np
+import pytest
 
-from cogmap import Activity
-from cogmap.evaluation.homology_of_map import homologies
+from cogmap import Activity, Betti
+from cogmap.evaluation.homology_of_map import SMELL, homologies, seen_and_smelt, unless_aliased
+from cogmap.graph import nearest_points
+
+
+def betti_of(numbers: tuple[int, ...], reasons: tuple[str, ...] = ("", "", "")) -> Betti:
+    bars = (np.zeros((0, 2)),) * 3
+    return Betti(numbers, bars, (2.0,) * 3, (3,) * 3, 3, (400, 400, 150), 9000, "geodesic", reasons)
+
+
+def test_sight_is_resolved_where_smell_tells_the_same() -> None:
+    alone, joint = betti_of((1, 3, 0), ("", "", "close")), betti_of((1, 1, 0))
+    told = "aliased: sight alone says [1, 3, 0], with smell [1, 1, 0]"
+    assert unless_aliased(alone, joint).reasons == ("", told, "close")
+    assert unless_aliased(joint, joint).resolved == (True,) * 3
+    unsure = unless_aliased(joint, betti_of((1, 1, 0), ("", "it is close", "")))
+    assert unsure.reasons == ("", "with smell it is close", "")
+
+
+@pytest.mark.parametrize(
+    ("place", "resolved"),
+    [((1, 1, 0), (True, True, True)), ((1, 0, 0), (True, False, False)), ((1, 2, 0), (True, False, False))],
+)
+def test_places_are_multiplied_by_the_circle_of_headings(
+    place: tuple[int, ...], resolved: tuple[bool, ...]
+) -> None:
+    assert unless_aliased(betti_of(place), betti_of((1, 2, 1)), turning=True).resolved == resolved
+
+
+def test_smell_counts_by_its_noise_whatever_the_order() -> None:
+    rng = np.random.default_rng(0)
+    codes, smells = rng.uniform(size=(900, 3)), np.zeros((900, 2))
+    smells = rng.normal(smells, 0.2)
+    joint = seen_and_smelt(codes, smells)
+    np.testing.assert_array_equal(joint[:, :3], codes)
+    radius = np.median(nearest_points(codes, 15).distances[:, -1])
+    np.testing.assert_allclose(joint[:, 3:] / smells, SMELL * radius / 0.2, rtol=0.1)
+    order = rng.permutation(900)
+    np.testing.assert_allclose(seen_and_smelt(codes[order], smells[order]), joint[order], rtol=1e-9)
 
 
 def test_ideal_populations_have_the_shape_of_what_they_code() -> None:
@@ -17,9 +55,12 @@ def test_ideal_populations_have_the_shape_of_what_they_code() -> None:
         position=xy,
     )
     codes = np.column_stack([xy, 0.8 * np.cos(heading), 0.8 * np.sin(heading)])
-    found = homologies(codes, activity, landmarks=(150, 80), draws=2)
+    smells = rng.normal(xy, 0.05)
+    found = homologies(codes, activity, smells, landmarks=(150, 80), draws=2)
+    assert "seen_and_smelt" not in homologies(codes, activity, landmarks=(50, 30), draws=1)
     assert {name: bars.numbers for name, bars in found.items()} == {
         "view_manifold": (1, 1, 0),
+        "seen_and_smelt": (1, 1, 0),
         "fused": (1, 1, 0),
         "place": (1, 0, 0),
         "heading": (1, 1, 0),

@@ -14,7 +14,9 @@ KEYS = {
     "position_median_m", "position_p95_m", "nose_position_median_m", "nose_position_p95_m",
     "heading_median_deg", "heading_p95_deg", "heading_resultant", "place_cells_passing", "place_coverage",
     "heading_cells_passing", "metric_map_r2", "metric_map_median_m", "metric_reason",
-    "betti_view_manifold", "betti_fused", "betti_place", "betti_heading",
+    "betti_view_manifold", "betti_fused", "betti_place", "betti_heading", "betti_seen_and_smelt",
+    "betti_view_manifold_resolved", "betti_fused_resolved", "betti_place_resolved", "betti_heading_resolved",
+    "betti_seen_and_smelt_resolved",
     "seconds", "peak_memory_bytes", "views", "trusted",
 }  # fmt: skip
 
@@ -57,6 +59,7 @@ def test_even_a_small_one_learns(result: tuple[Path, dict[str, Any]]) -> None:
     assert 1.5 * metrics["position_median_m"] < metrics["nose_position_median_m"]
     assert metrics["heading_cells_passing"] > 0.9
     assert metrics["betti_heading"] == [1, 1, 0]
+    assert metrics["betti_heading_resolved"] == [not reason for reason in metrics["betti_reasons"]["heading"]]
     assert metrics["peak_memory_bytes"] > 1e8
 
 

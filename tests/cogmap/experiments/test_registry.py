@@ -33,7 +33,7 @@ KEYS = {
     "localisation": {"position_median_m", "heading_median_deg", "nearest_position_median_m", "placed"},
     "roadmap": {"success", "length_ratio_median", "paths_touching", "deviation_mean", "query_ms"},
     "distinguishability": {"confusion_white", "confusion_blue_wall", "betti_white", "betti_blue_wall"},
-    "fusion": {"vision_only", "olfaction_only", "fused"},
+    "fusion": {"vision_only", "olfaction_only", "fused", "competition"},
     "odour_ablation": {
         "1_sources_0.1_noise",
         "4_sources_0.1_noise",
@@ -74,7 +74,8 @@ def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> No
     out = tmp_path / name
     result = run_experiment(name, out, views=VIEWS[name], seed=1)
     assert result.metrics.keys() >= {"experiment", "arena", "views", "seed"} | KEYS[name]
-    assert result.metrics["arena"] == experiments()[name].room
+    chosen = experiments()[name]
+    assert result.metrics["arena"] == ", ".join((chosen.room, *chosen.extra_rooms))
     assert json.loads((out / "metrics.json").read_text(encoding="utf-8")) == result.metrics
     assert {file.stem for file in out.glob("*.png")} == result.figures.keys() == result.captions.keys()
     assert {file.stem for file in out.glob("*.parquet")} == result.tables.keys()

@@ -3,7 +3,6 @@ import inspect
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -124,10 +123,24 @@ def test_fit_asks_the_stages_for_epochs_and_order(walk: Recording, monkeypatch: 
             smelt.append(batch.log_odours)
 
     stages = (*STAGES[:2], Listening(), *STAGES[2:])
-    monkeypatch.setattr("cogmap.map.cognitive_map.Network", partial(Network, stages=stages))
+    monkeypatch.setattr("cogmap.map.cognitive_map.STAGES", stages)
     grown = CognitiveMap(charts=20, components=10).fit(walk.views[:300], walk.odours[:300])
     np.testing.assert_array_equal(torch.cat(smelt), np.log(np.tile(walk.odours[:300], (2, 1))))
     assert list(grown.seconds_) == ["retina", *(stage.name for stage in stages)]
+
+
+def test_place_cells_can_learn_before_anything_is_seen(walk: Recording, tmp_path: Path) -> None:
+    views, odours = walk.views[:300], walk.odours[:300]
+    infant = CognitiveMap(charts=20, components=10, place_cells=30, smell_first=True, epoch=300)
+    infant.partial_fit(views, odours)
+    learnt = infant.state_dict()
+    assert int(learnt["place.initialised"]) == 30
+    assert int(learnt["charts.initialised"]) == 0
+    infant.save(tmp_path / "map")
+    other = CognitiveMap.load(tmp_path / "map")
+    for each in (infant, other):
+        each.partial_fit(views, odours).partial_fit(views, odours)
+    assert same(infant, other)
 
 
 def test_small_map_knows_place_and_heading(walk: Recording, camera: Camera, cmap: CognitiveMap) -> None:

@@ -4,14 +4,14 @@ import pytest
 import torch
 
 from cogmap import CogmapError, CognitiveMap
-from cogmap.map.storage import read_map, write_map
+from cogmap.map.storage import read_state, write_state
 
 WEIGHTS = {"a": torch.arange(6.0).reshape(2, 3), "b": torch.tensor(7)}
 
 
 def test_round_trip(tmp_path: Path) -> None:
-    write_map(tmp_path / "map", WEIGHTS, {"charts": 3}, {"odorants": 2})
-    weights, settings, learnt = read_map(tmp_path / "map")
+    write_state(tmp_path / "map", WEIGHTS, {"charts": 3}, {"odorants": 2})
+    weights, settings, learnt = read_state(tmp_path / "map")
     assert all(torch.equal(weights[name], WEIGHTS[name]) for name in WEIGHTS)
     assert (settings, learnt) == ({"charts": 3}, {"odorants": 2})
     assert [entry.name for entry in tmp_path.iterdir()] == ["map"]
@@ -22,7 +22,7 @@ def test_round_trip(tmp_path: Path) -> None:
 )
 def test_damage_is_told_in_one_line(tmp_path: Path, damage: str) -> None:
     path = tmp_path / "map"
-    write_map(path, WEIGHTS, {}, {})
+    write_state(path, WEIGHTS, {}, {})
     if damage == "missing":
         path = tmp_path / "nothing"
     elif damage == "no weights":
@@ -38,7 +38,7 @@ def test_damage_is_told_in_one_line(tmp_path: Path, damage: str) -> None:
 
 
 def test_weights_of_another_size_are_refused(tmp_path: Path) -> None:
-    write_map(tmp_path / "map", WEIGHTS, {}, {"view_shape": [15, 90, 3], "odorants": 3, "epoch": 5})
+    write_state(tmp_path / "map", WEIGHTS, {}, {"view_shape": [15, 90, 3], "odorants": 3, "epoch": 5})
     with pytest.raises(CogmapError, match="whole map"):
         CognitiveMap.load(tmp_path / "map")
 
@@ -46,12 +46,12 @@ def test_weights_of_another_size_are_refused(tmp_path: Path) -> None:
 def test_nothing_is_left_when_writing_fails(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
     with pytest.raises(CogmapError, match="cannot write"):
-        write_map(tmp_path / "file" / "map", WEIGHTS, {}, {})
+        write_state(tmp_path / "file" / "map", WEIGHTS, {}, {})
     assert [entry.name for entry in tmp_path.iterdir()] == ["file"]
 
 
 def test_another_version_is_told(tmp_path: Path) -> None:
-    write_map(tmp_path / "map", WEIGHTS, {}, {})
+    write_state(tmp_path / "map", WEIGHTS, {}, {})
     (tmp_path / "map" / "map.json").write_text('{"version": 2}', encoding="utf-8")
     with pytest.raises(CogmapError, match="map of version 2, not 3; learn it again, or load it with"):
-        read_map(tmp_path / "map")
+        read_state(tmp_path / "map")

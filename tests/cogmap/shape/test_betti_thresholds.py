@@ -3,26 +3,39 @@ import pytest
 
 from cogmap.shape import betti_thresholds as null
 
-METRICS = {"geodesic": (1, 2), "euclidean": (0, 1, 2)}
-TABLES = [(metric, dimension) for metric, dimensions in METRICS.items() for dimension in dimensions]
+KINDS: dict[str, tuple[null.Metric, int, tuple[int, ...]]] = {
+    "geodesic_15": ("geodesic", 15, (1, 2)),
+    "geodesic_25": ("geodesic", 25, (1, 2)),
+    "euclidean": ("euclidean", 15, (0, 1, 2)),
+}
+TABLES = [(kind, dimension) for kind, (*_, dimensions) in KINDS.items() for dimension in dimensions]
 
 
-@pytest.mark.parametrize(("metric", "dimension"), TABLES)
-def test_table_holds_what_is_simulated(metric: null.Metric, dimension: int) -> None:
-    simulated = null._simulated(metric, dimension, 50, 25, null.NEIGHBOURS)
-    assert null.threshold(metric, dimension, points=50, landmarks=25) == pytest.approx(simulated, abs=1e-4)
+@pytest.mark.parametrize("kind", KINDS)
+def test_table_holds_what_is_simulated(kind: str) -> None:
+    metric, neighbours, dimensions = KINDS[kind]
+    sizes = [(dimension, 25) for dimension in dimensions]
+    simulated = null._worst_quantiles(metric, 50, sizes, null.CLOUDS, neighbours)
+    found = [
+        null.threshold(metric, dimension, points=50, landmarks=25, neighbours=neighbours)
+        for dimension in dimensions
+    ]
+    np.testing.assert_allclose(found, simulated, atol=1e-4)
 
 
-@pytest.mark.parametrize(("metric", "dimension"), TABLES)
-def test_between_the_entries_lies_between(metric: null.Metric, dimension: int) -> None:
+@pytest.mark.parametrize(("kind", "dimension"), TABLES)
+def test_between_the_entries_lies_between(kind: str, dimension: int) -> None:
+    metric, neighbours, _ = KINDS[kind]
     corners = [
-        null.threshold(metric, dimension, points=landmarks * crowd, landmarks=landmarks)
+        null.threshold(
+            metric, dimension, points=landmarks * crowd, landmarks=landmarks, neighbours=neighbours
+        )
         for landmarks in (100, 200)
         for crowd in (8, 16)
     ]
-    between = null.threshold(metric, dimension, points=1700, landmarks=150)
+    between = null.threshold(metric, dimension, points=1700, landmarks=150, neighbours=neighbours)
     assert min(corners) <= between <= max(corners)
-    table = np.array(null._table()[metric][dimension])
+    table = np.array(null._table()[kind][dimension])
     assert table.shape == (len(null.LANDMARKS[dimension]), len(null.CROWDS))
     assert corners[0] == table[2, 3]
 
@@ -53,10 +66,13 @@ def test_outside_the_table_is_simulated() -> None:
     assert 1 < few < null.threshold("euclidean", 1, points=240, landmarks=60)
 
 
-def test_fewer_neighbours_have_their_own_null() -> None:
-    table = null.threshold("geodesic", 1, points=50, landmarks=25)
-    assert null.threshold("geodesic", 1, points=50, landmarks=25, neighbours=40) == table
-    assert null.threshold("geodesic", 1, points=50, landmarks=25, neighbours=5) != table
+def test_numbers_of_neighbours_have_their_own_null() -> None:
+    def limit(neighbours: int) -> float:
+        return null.threshold("geodesic", 1, points=400, landmarks=25, neighbours=neighbours)
+
+    assert limit(15) == limit(24) != limit(25) == limit(40)
+    few = null.threshold("geodesic", 1, points=50, landmarks=25, neighbours=5)
+    assert few == null._simulated("geodesic", 1, 50, 25, 5)
     straight = null.threshold("euclidean", 1, points=50, landmarks=25)
     assert null.threshold("euclidean", 1, points=50, landmarks=25, neighbours=5) == straight
 

@@ -185,6 +185,29 @@ def test_result_says_how_sure_it_is() -> None:
     assert f"{found.ratios[1][0]:.2f}" in str(found)
 
 
+def test_a_graph_of_more_neighbours_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+    from cogmap.shape import homology  # noqa: PLC0415
+
+    X = cylinder(900, np.random.default_rng(8))
+    asked: list[list[int]] = []
+    monkeypatch.setattr(homology, "doubt", lambda *args: asked.append([k for k, _ in args[3]]) or "so")
+    assert betti(X, landmarks=FEW).reasons == ("so",) * 3
+    assert betti(X, landmarks=FEW, check=None, draws=1).resolved == (False,) * 3
+    assert betti(X[:25], check=25, draws=1).numbers[0] == 1
+    assert asked == [[25]] * 3 + [[]] * 6
+
+
+def test_short_cuts_are_shunned() -> None:
+    """Ten edges between far places, as long as any other: taken for what they say, each makes a loop."""
+    rng = np.random.default_rng(1)
+    graph = neighbour_graph(cylinder(1500, rng))
+    ends = rng.integers(1500, size=(2, 10))
+    jumps = sp.csr_array((np.full(10, np.median(graph.data)), tuple(ends)), shape=graph.shape)
+    graph = sp.csr_array(graph.maximum(jumps).maximum(jumps.T))
+    found = betti(graph, "precomputed", landmarks=FEW, draws=1)
+    assert (found.numbers, found.resolved) == ((1, 1, 0), (True,) * 3), str(found)
+
+
 def test_fewer_dimensions_on_request() -> None:
     found = betti(two_discs(600, np.random.default_rng(9)), max_dimension=0)
     assert found.numbers == (2,)
@@ -201,7 +224,7 @@ def test_majority_of_the_draws_decides(monkeypatch: pytest.MonkeyPatch) -> None:
         "_find",
         lambda *_, **__: homology._Found(np.repeat(bars, next(loops), axis=0), 2.0, 400),
     )
-    found: Betti = betti(disc(100, np.random.default_rng(10)), max_dimension=0, draws=5)
+    found: Betti = betti(disc(100, np.random.default_rng(10)), max_dimension=0, draws=5, check=None)
     assert (found.numbers, found.votes) == ((1,), (2,))
 
 

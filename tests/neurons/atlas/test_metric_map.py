@@ -64,12 +64,16 @@ def learn(
     cells: PlaceCells, walk: Walk, *, batch: int = 256, solve: bool = True, **settings: float
 ) -> MetricMap:
     metric_map = MetricMap(len(cells.centres), 3, **settings)
-    learnt = walk.heading - off(walk.place)
-    for odour, heading in zip(walk.odour.split(batch), learnt.split(batch), strict=True):
-        metric_map.partial_fit(cells, odour, heading)
+    teach(metric_map, cells, walk, batch=batch)
     if solve:
         metric_map.solve()
     return metric_map
+
+
+def teach(metric_map: MetricMap, cells: PlaceCells, walk: Walk, *, batch: int = 256) -> None:
+    learnt = walk.heading - off(walk.place)
+    for odour, heading in zip(walk.odour.split(batch), learnt.split(batch), strict=True):
+        metric_map.partial_fit(cells, odour, heading)
 
 
 def spread_of_angle(angle: Tensor) -> float:
@@ -92,6 +96,20 @@ def test_finds_the_map_and_the_offset(cells: PlaceCells, walked: Walk) -> None:
     assert abs(laid[0]) == pytest.approx(metric_map.lag * STEP, rel=0.03)
     # a place averages over its surroundings, which shrinks the offset
     assert spread_of_angle(off(fresh.place) - offset) < 0.45 * spread_of_angle(off(fresh.place))
+
+
+def test_a_second_time_on_corrected_headings_the_offset_is_nearer(cells: PlaceCells, walked: Walk) -> None:
+    once, fresh = learn(cells, walked), walk(1000, 1)
+    twice = learn(cells, walked)
+    twice.begin_again()
+    assert not any(
+        sums.any() for sums in (twice.spread, twice.ahead, twice.shared, twice.counted, twice.seen)
+    )
+    teach(twice, cells, walked)
+    twice.solve()
+    assert not twice.diagnosis()
+    left = [spread_of_angle(off(fresh.place) - each(cells, fresh.odour).offset) for each in (once, twice)]
+    assert left[1] < 0.75 * left[0]
 
 
 @pytest.mark.parametrize(("lag", "straight"), [(3, 0.25), (5, 0.05)])

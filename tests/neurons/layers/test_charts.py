@@ -18,8 +18,13 @@ def manifold(views: int, seed: int = 0) -> Tensor:
     return torch.from_numpy(np.cos(place @ waves + phases)).float()
 
 
-def blank(charts: int, components: int = 20) -> Charts:
-    return Charts(charts, components, generator=torch.Generator().manual_seed(0))
+def blank(charts: int, components: int = 20, **settings: float) -> Charts:
+    return Charts(charts, components, 2, generator=torch.Generator().manual_seed(0), **settings)
+
+
+def smells(views: Tensor) -> Tensor:
+    """A nose that never smells anything: sight alone decides."""
+    return torch.zeros(len(views), 2)
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +38,7 @@ def charts(views: Tensor) -> Charts:
     order = torch.Generator().manual_seed(1)
     for winners in (12, 10, 8, 6, 5, 4, 4):
         for batch in views[torch.randperm(len(views), generator=order)].split(250):
-            grown.partial_fit(batch, winners=winners, window=float(len(views)))
+            grown.partial_fit(batch, smells(batch), winners=winners, window=float(len(views)))
     grown.freeze()
     return grown
 
@@ -72,16 +77,16 @@ def test_centres_tile_the_manifold(charts: Charts, views: Tensor) -> None:
 def test_first_codes_become_the_centres(views: Tensor) -> None:
     grown = blank(30)
     for batch in views[:30].split(8):
-        grown.partial_fit(batch, winners=4, window=100.0)
+        grown.partial_fit(batch, smells(batch), winners=4, window=100.0)
     assert torch.equal(grown.centres, views[:30])
     assert len(grown) == int(grown.initialised) == 30
 
 
 def test_placing_over_batches_leaves_the_rest_to_compete(views: Tensor) -> None:
     once, bit_by_bit = blank(30), blank(30)
-    once.partial_fit(views[:50], winners=4, window=100.0)
+    once.partial_fit(views[:50], smells(views[:50]), winners=4, window=100.0)
     for batch in views[:50].split([7, 11, 32]):
-        bit_by_bit.partial_fit(batch, winners=4, window=100.0)
+        bit_by_bit.partial_fit(batch, smells(batch), winners=4, window=100.0)
     assert not torch.equal(once.centres, views[:30])
     for name, buffer in once.named_buffers():
         assert torch.equal(buffer, bit_by_bit.get_buffer(name)), name
@@ -95,7 +100,7 @@ def test_lone_chart_learns_mean_and_principal_components() -> None:
     lone = blank(1, 6)
     for _ in range(4):
         for batch in torch.from_numpy(x).float().split(100):
-            lone.partial_fit(batch, winners=1, window=1e9)
+            lone.partial_fit(batch, smells(batch), winners=1, window=1e9)
     np.testing.assert_allclose(lone.centres[0], x.mean(axis=0), atol=1e-3)
     assert (np.abs(np.diag(lone.tangents[0].double().numpy() @ basis)) > 0.99).all()
     np.testing.assert_allclose(lone.variances[0], spread[:3] ** 2, rtol=0.15)
@@ -109,17 +114,19 @@ def test_memory_is_a_number_of_views() -> None:
         200.0: (0.25 * first + 0.5 * second + third).mean(dim=0) / 1.75,
     }.items():
         lone = blank(1)
-        lone.partial_fit(x[:1], winners=1, window=window)
+        lone.partial_fit(x[:1], smells(x[:1]), winners=1, window=window)
         for batch in (first, second, third):
-            lone.partial_fit(batch, winners=1, window=window)
+            lone.partial_fit(batch, smells(batch), winners=1, window=window)
         torch.testing.assert_close(lone.centres[0], mean, atol=1e-5, rtol=1e-4)
 
 
 def test_second_rank_learns_with_weight_exp_minus_one() -> None:
     left, right = torch.full((4, 20), -1.0), torch.full((6, 20), 1.0)
     pair = blank(2)
-    pair.partial_fit(torch.cat([left[:1], right[:1]]), winners=2, window=1e9)
-    pair.partial_fit(torch.cat([left, right]), winners=2, window=1e9)
+    pair.partial_fit(
+        torch.cat([left[:1], right[:1]]), smells(torch.cat([left[:1], right[:1]])), winners=2, window=1e9
+    )
+    pair.partial_fit(torch.cat([left, right]), smells(torch.cat([left, right])), winners=2, window=1e9)
     h = np.exp(-1.0)
     np.testing.assert_allclose(pair.centres[0], (-4 + 6 * h) / (4 + 6 * h), rtol=1e-5)
     np.testing.assert_allclose(pair.centres[1], (6 - 4 * h) / (6 + 4 * h), rtol=1e-5)
@@ -128,7 +135,7 @@ def test_second_rank_learns_with_weight_exp_minus_one() -> None:
 def test_ranks_share_sangers_rule(views: Tensor) -> None:
     """One batch on drawn centres, view by view: variances start at nought, so U is the drive alone."""
     layer = blank(6)
-    layer.partial_fit(views[:6], winners=3, window=1e9)
+    layer.partial_fit(views[:6], smells(views[:6]), winners=3, window=1e9)
     before, codes = layer.tangents.double().numpy(), views[6:60]
     centres = layer.centres.double().numpy().copy()
     drive, responsibility = np.zeros_like(before), np.zeros(6)
@@ -138,7 +145,7 @@ def test_ranks_share_sangers_rule(views: Tensor) -> None:
             y = before[k] @ residual
             drive[k] += h * (np.outer(y, residual) - np.tril(np.outer(y, y), -1) @ before[k])
             responsibility[k] += h
-    layer.partial_fit(codes, winners=3, window=1e9)
+    layer.partial_fit(codes, smells(codes), winners=3, window=1e9)
     variances = np.linalg.norm(drive, axis=2) / responsibility[:, None]
     np.testing.assert_allclose(layer.variances, variances, rtol=1e-3, atol=1e-6)
     np.testing.assert_allclose(
@@ -154,9 +161,57 @@ def test_nearest_same_as_scikit_learn(charts: Charts, views: Tensor) -> None:
     np.testing.assert_allclose(squared, distance**2, rtol=1e-4, atol=1e-6)
 
 
+@pytest.mark.parametrize("smell", [0.0, 0.5])
+def test_places_that_look_alike_get_charts_of_their_own_when_smell_competes(
+    views: Tensor, smell: float
+) -> None:
+    """Two rooms of the same views, one of which smells of something else."""
+    noise = torch.Generator().manual_seed(3)
+    codes = torch.cat([views[:1500], views[:1500]])
+    odours = torch.repeat_interleave(torch.tensor([[0.0, 0.0], [1.0, -1.0]]), 1500, dim=0)
+    odours += 0.1 * torch.randn(3000, 2, generator=noise)
+    layer = blank(100, smell=smell)
+    for winners in (6, 4, 4):
+        for rows in torch.randperm(3000, generator=noise).split(250):
+            layer.partial_fit(codes[rows], odours[rows], winners=winners, window=3000.0)
+    chart = layer.excite(codes, 1, odours).chart[:, 0]
+    second = torch.bincount(chart[1500:], minlength=100) / torch.bincount(chart, minlength=100).clamp(min=1)
+    mixed = float(torch.minimum(second, 1 - second).mean())
+    assert mixed < 0.02 if smell else mixed > 0.3, mixed
+
+
+def test_joint_distance_weighs_smell_by_the_median_misfits(views: Tensor) -> None:
+    odours = torch.randn(300, 2, generator=torch.Generator().manual_seed(2))
+    layer = blank(30, smell=0.7)
+    for batch in (slice(30), slice(30, 130)):
+        layer.partial_fit(views[batch], odours[batch], winners=4, window=1e9)
+    before = blank(30, smell=0.7)
+    before.partial_fit(views[:30], odours[:30], winners=4, window=1e9)
+    # before any chart has won, λ is κ
+    points, seen = (
+        np.hstack([z.double().numpy(), 0.7 * o.double().numpy()])
+        for z, o in ((before.centres, before.smells), (views[30:130], odours[30:130]))
+    )
+    won = NearestNeighbors(n_neighbors=1).fit(points).kneighbors(seen, return_distance=False)[:, 0]
+    sight = np.square(views[30:130].numpy() - before.centres.numpy()[won]).sum(axis=1)
+    smell = np.square(odours[30:130].numpy() - before.smells.numpy()[won]).sum(axis=1)
+    medians = [np.sort(each)[49] for each in (sight, smell)]  # the lower of the two in the middle, as PyTorch
+    np.testing.assert_allclose(layer.misfits, medians, rtol=1e-4)
+    weight = 0.7 * np.sqrt(medians[0] / medians[1])
+    assert float(layer.smell_weight) == pytest.approx(weight, rel=1e-4)
+    test = slice(130, 300)
+    joint = np.hstack([views[test].double().numpy(), weight * odours[test].double().numpy()])
+    charts = np.hstack([layer.centres.double().numpy(), weight * layer.smells.double().numpy()])
+    np.testing.assert_allclose(layer.points, charts, rtol=1e-4, atol=1e-5)
+    distance, index = NearestNeighbors(n_neighbors=5).fit(charts).kneighbors(joint)
+    chart, squared = layer.excite(views[test], 5, odours[test])
+    assert np.mean(chart.numpy() == index) > 0.99
+    np.testing.assert_allclose(squared, distance**2, rtol=1e-3)
+
+
 def test_no_more_winners_than_charts(views: Tensor) -> None:
     grown = blank(3)
-    grown.partial_fit(views[:3], winners=12, window=100.0)
+    grown.partial_fit(views[:3], smells(views[:3]), winners=12, window=100.0)
     assert grown.excite(views[:5], 12).chart.shape == (5, 3)
 
 
@@ -171,21 +226,22 @@ def test_coordinates_are_tangents_times_residual(charts: Charts, views: Tensor) 
 
 
 def test_grows_halfway_along_the_longest_overlaps() -> None:
-    charts = Charts(4, 5, generator=torch.Generator().manual_seed(0))
+    charts = blank(4, 5)
+    charts.smells = torch.tensor([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [2.0, 3.0]])
     charts.centres = torch.tensor([[0.0], [1.0], [4.0], [14.0]]) * torch.eye(5)[1]
     before, overlapping = charts.state_dict(), torch.tensor([[0, 1], [1, 2], [2, 3], [0, 2]])
     before = {name: value.clone() for name, value in before.items()}
     charts.grow(overlapping, 2)
     assert charts.centres[4:, 1].tolist() == [9.0, 2.0]
+    assert charts.smells[4:].tolist() == [[1.0, 1.5], [0.5, 0.0]]
     assert charts.tangents[4:].equal(before["tangents"][[2, 0]])
     assert not charts.responsibility[4:].any()
     assert not charts.variances[4:].any()
     assert charts.initialised == len(charts) == 6
-    for name in ("centres", "tangents", "responsibility", "variances"):
+    for name in ("centres", "smells", "tangents", "responsibility", "variances"):
         assert charts.get_buffer(name)[:4].equal(before[name])
-    charts.partial_fit(
-        torch.randn(50, 5, generator=torch.Generator().manual_seed(1)), winners=6, window=100.0
-    )
+    codes = torch.randn(50, 5, generator=torch.Generator().manual_seed(1))
+    charts.partial_fit(codes, smells(codes), winners=6, window=100.0)
     assert charts.responsibility.all()
     charts.grow(overlapping, 9)
     assert len(charts) == 10

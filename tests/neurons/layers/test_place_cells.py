@@ -29,6 +29,13 @@ def test_units_spread_over_the_smells() -> None:
     assert nearest.max() < 2.2 * pitch
 
 
+def test_centres_spread_evenly() -> None:
+    """Distance to the nearest centre over that of as many random points: 1 at random, 2 at most."""
+    centres = grown(100, smells(4000)).centres
+    apart = torch.cdist(centres, centres).fill_diagonal_(torch.inf).min(dim=1).values
+    assert apart.mean() * 2 * 100**0.5 > 1.4
+
+
 def test_peak_at_the_centre() -> None:
     layer = grown(60, smells(3000))
     torch.testing.assert_close(layer.tuning(layer.centres).diagonal(), torch.full((60,), 20.0))
@@ -68,13 +75,17 @@ def test_a_strange_smell_excites_nothing_and_leaves_no_subnormal_rate() -> None:
 
 
 @pytest.mark.parametrize(("setting", "winners"), [({}, 6), ({"winners": 2}, 2)])
-def test_the_nearest_units_learn_from_one_smell(setting: dict[str, int], winners: int) -> None:
+def test_the_nearest_unit_moves_and_the_nearest_few_learn_their_width(
+    setting: dict[str, int], winners: int
+) -> None:
     odours = smells(31)
     layer = PlaceCells(30, 1, 2)
     layer.compete(odours, window=100.0, **setting)
-    learnt = (layer.centres - odours[:30]).norm(dim=1).nonzero().flatten().tolist()
-    nearest = np.argsort(np.linalg.norm(odours[:30] - odours[30], axis=1))[:winners]
-    assert learnt == sorted(nearest.tolist())
+    nearest = np.argsort(np.linalg.norm(odours[:30] - odours[30], axis=1))[:winners].tolist()
+    moved = (layer.centres - odours[:30]).norm(dim=1).nonzero().flatten().tolist()
+    assert moved == nearest[:1]
+    widened = (layer.covariances - torch.eye(2)).flatten(1).norm(dim=1).nonzero().flatten().tolist()
+    assert widened == sorted(nearest)
 
 
 def test_lone_unit_learns_mean_and_covariance() -> None:

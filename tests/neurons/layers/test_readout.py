@@ -52,7 +52,7 @@ def test_heading_and_odour_of_codes_held_out(
 ) -> None:
     _, charts = tiling
     readout, codes = settled(compass), cylinder(unseen)
-    heading, odour = readout(charts, codes, readout.excite(charts, codes))
+    *_, heading, odour = readout(charts, codes, readout.excite(charts, codes))
     error = torch.angle(torch.exp(1j * (heading - unseen[:, 2]))).rad2deg().abs()
     assert error.median() < 0.5
     assert error.max() < 3
@@ -79,6 +79,27 @@ def test_weights_are_gaussian_in_distance(
     np.testing.assert_allclose(weight, activity / activity.sum(axis=1, keepdims=True), atol=1e-4)
 
 
+@pytest.mark.parametrize("tolerance", [1.4, 3.0, 1e9])
+def test_charts_that_smell_of_another_place_fall_silent(tolerance: float) -> None:
+    """Three charts of one place and two of another that looks the same: the more and the nearer decide."""
+    charts = Charts(5, 4, 1, generator=torch.Generator().manual_seed(0))
+    readout = Readout(5, 4, 1, winners=5, tolerance=tolerance)
+    readout.intercepts = torch.tensor([[0.0], [2.0], [0.1], [2.1], [-0.1]])
+    readout.jacobians.zero_()
+    readout.phases, readout.turning = torch.tensor([0.0, 3.0, 0.1, 3.0, -0.1]), torch.zeros(5, 4)
+    charts.misfits = torch.tensor([1.0, 0.04])
+    codes = torch.zeros(1, 4)
+    chart, weight, heading, odour = readout(charts, codes, readout.excite(charts, codes))
+    kin = np.exp(-0.5 * (readout.intercepts[:, 0].numpy() - 0.0) ** 2 / (tolerance**2 * 0.04))
+    np.testing.assert_allclose(weight[0], (kin / kin.sum())[chart[0]], atol=1e-5)
+    assert float(weight.sum()) == pytest.approx(1)
+    if tolerance < 2:
+        assert abs(float(odour)) < 0.01
+        assert abs(float(heading)) < 0.01
+    elif tolerance > 1e3:
+        assert float(odour) == pytest.approx(float(readout.intercepts.mean()), abs=1e-4)
+
+
 def test_no_compass_no_heading(
     tiling: Tiling,
     settled: Callable[[Compass | None], Readout],
@@ -87,6 +108,6 @@ def test_no_compass_no_heading(
 ) -> None:
     _, charts = tiling
     readout, codes = settled(None), cylinder(unseen)
-    heading, odour = readout(charts, codes, readout.excite(charts, codes))
+    *_, heading, odour = readout(charts, codes, readout.excite(charts, codes))
     assert heading.isnan().all()
     torch.testing.assert_close(odour, smell(unseen), atol=1e-4, rtol=0)

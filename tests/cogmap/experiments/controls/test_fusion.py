@@ -2,14 +2,15 @@ from typing import Any
 
 import pytest
 
-from arena import Camera
-from cogmap.experiments.registry import run_experiment
+from arena import Arena, Camera
+from cogmap.experiments.registry import experiments, run_experiment
 from cogmap.experiments.result import Result
 
 
 @pytest.fixture(scope="module")
 def result() -> Result:
-    return run_experiment("fusion", views=5000, camera=Camera.panoramic(90, 15))
+    room = Arena.load("furnished")
+    return run_experiment("fusion", views=5000, camera=Camera.panoramic(90, 15), room=room)
 
 
 @pytest.fixture(scope="module")
@@ -38,6 +39,16 @@ def test_both_give_both(metrics: dict[str, Any]) -> None:
     assert fused["heading_cells_passing"] > 0.8
     assert fused["in_field_direction_vector"] < 0.25
     assert 2 * fused["position_median_m"] < fused["nose_position_median_m"]
+
+
+def test_smell_competes_or_does_not_on_the_same_walks(metrics: dict[str, Any]) -> None:
+    assert metrics["competition"].keys() == {"furnished"}
+    told = metrics["competition"]["furnished"]
+    shared = told["with_smell"].keys() & metrics["fused"].keys()
+    assert {key: told["with_smell"][key] for key in shared} == {key: metrics["fused"][key] for key in shared}
+    assert told["sight_alone"]["position_median_m"] != told["with_smell"]["position_median_m"]
+    assert told["sight_alone"]["place_cells_passing"] > 0.8
+    assert (experiments()["fusion"].room, *experiments()["fusion"].extra_rooms) == ("furnished", "cue_square")
 
 
 def test_every_figure_that_applies_is_there(metrics: dict[str, Any]) -> None:

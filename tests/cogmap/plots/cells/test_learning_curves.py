@@ -17,8 +17,9 @@ SILENCING = pd.DataFrame({"silent": [0.0, 0.2, 0.5], **{name: v[::-1] for name, 
 
 
 def test_every_column_is_a_curve_against_views_above_and_silence_below() -> None:
-    axes = plot_courses(GROWTH, SILENCING).axes
-    for line, rows, along in ((axes[:3], GROWTH, "views"), (axes[3:], SILENCING, "silent")):
+    axes = plot_courses({"with sight": GROWTH, "by smell": GROWTH}, SILENCING).axes
+    lines = ((axes[:3], GROWTH, "views"), (axes[3:6], GROWTH, "views"), (axes[6:], SILENCING, "silent"))
+    for line, rows, along in lines:
         for panel, (label, curves) in zip(line, PANELS.items(), strict=True):
             assert panel.get_ylabel() == label
             assert len(panel.lines) == len(curves)
@@ -31,11 +32,12 @@ def test_every_column_is_a_curve_against_views_above_and_silence_below() -> None
 
 
 def test_views_are_on_a_logarithmic_axis_and_shares_are_not() -> None:
-    axes = plot_courses(GROWTH, SILENCING).axes
-    assert [panel.get_xscale() for panel in axes] == ["log"] * 3 + ["linear"] * 3
-    assert [panel.get_xlabel() for panel in axes] == ["views seen"] * 3 + ["charts silenced (share)"] * 3
+    axes = plot_courses({"with sight": GROWTH, "by smell": GROWTH}, SILENCING).axes
+    assert [axes[line].get_title() for line in (0, 3, 6)] == ["with sight", "by smell", "charts fall silent"]
+    assert [panel.get_xscale() for panel in axes] == ["log"] * 6 + ["linear"] * 3
+    assert [panel.get_xlabel() for panel in axes] == ["views met"] * 6 + ["charts silenced (share)"] * 3
 
 
 def test_nothing_to_draw_is_refused() -> None:
-    with pytest.raises(CogmapError, match="3 and 0 rows"):
-        plot_courses(GROWTH, SILENCING.iloc[:0])
+    with pytest.raises(CogmapError, match="3, 0\\] rows"):
+        plot_courses({"with sight": GROWTH}, SILENCING.iloc[:0])

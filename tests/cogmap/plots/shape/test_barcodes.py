@@ -31,6 +31,7 @@ def annulus() -> Betti:
         landmarks=(400, 400, 150),
         points=17_000,
         metric="geodesic",
+        reasons=("", "", "with 25 neighbours it is 2"),
     )
 
 
@@ -85,12 +86,13 @@ def test_axes_are_logarithmic_labelled_and_shared_by_all_results(annulus: Betti)
 
 def test_title_tells_numbers_and_votes(annulus: Betti) -> None:
     (part,) = plot_barcodes({"view manifold": annulus}).subfigs
-    title = "view manifold: b0 = 1 (3 of 3 draws), b1 = 2 (3 of 3 draws), b2 = 1 (2 of 3 draws)"
+    title = "view manifold: b0 = 1 (3 of 3 draws), b1 = 2 (3 of 3 draws), b2 = 1 (2 of 3 draws, unresolved)"
     assert part.get_suptitle() == title
 
 
 def test_a_result_without_voids_leaves_its_panel_empty(annulus: Betti) -> None:
-    fields = {name: getattr(annulus, name)[:2] for name in ("numbers", "bars", "thresholds", "votes")}
+    names = ("numbers", "bars", "thresholds", "votes", "reasons")
+    fields = {name: getattr(annulus, name)[:2] for name in names}
     shallow = dataclasses.replace(annulus, landmarks=(400, 400), **fields)
     axes = plot_barcodes({"deep": annulus, "shallow": shallow}).axes
     assert [panel.axison for panel in axes] == [True, True, True, False]
