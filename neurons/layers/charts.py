@@ -1,4 +1,4 @@
-"""Charts of the view manifold: centres that compete for what is seen and smelt, each with tangents of sight."""
+"""Charts of the view manifold: they compete for what is seen and smelt, and learn tangents of sight."""
 
 from typing import NamedTuple
 
@@ -33,8 +33,8 @@ class Charts(nn.Module):
 
     1 the winner: smell keeps places apart that look alike, and where one place is seen its weight λ is too
     small to move a border. The medians are running ones over the winners of an epoch: neither the order of
-    views nor the noise of the nose need be known. The chart of rank r learns with h = exp(−2 r / m): C_k and a_k
-    move to the running means of h z and h o, and U_k follows Sanger's rule on the residuals z − C_k,
+    views nor the noise of the nose need be known. The chart of rank r learns with h = exp(−2 r / m): C_k and
+    a_k move to the running means of h z and h o, and U_k follows Sanger's rule on the residuals z − C_k,
     normalised by their variance as in `neurons.layers.sanger.Sanger`. `freeze` makes the tangents
     orthonormal; after it nothing here changes any more.
 

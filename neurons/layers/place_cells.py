@@ -57,8 +57,8 @@ class PlaceCells(nn.Module):
     ) -> None:
         """Learn from a batch of smells; the first smells become the centres.
 
-        The nearest unit moves; the nearest `winners` learn how wide they are, which sets how much neighbouring
-        fields overlap. `window` is how many views a unit remembers when it averages.
+        The nearest unit moves; the nearest `winners` learn how wide they are, which sets how much fields
+        overlap. `window` is how many views a unit remembers when it averages.
         """
         cells = len(self.centres)
         initialised = int(self.initialised)
