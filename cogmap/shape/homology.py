@@ -144,7 +144,7 @@ def betti(
         Of every point in the neighbour graph; 15, because fewer make false loops.
     check
         Neighbours of every point in a second graph, which is looked at once and must tell the same; None
-        looks at no other. Without effect where no neighbours are sought.
+        looks at no other. Without effect where no neighbours are sought, or there are not so many points.
     landmarks
         How many for pieces and loops, and how many of these for voids.
     draws
