@@ -119,8 +119,8 @@ def betti(
     seen in the same way (`betti_thresholds.threshold`). This is repeated from `draws` random first landmarks,
     and each Betti number is the majority's, the smallest of a tie.
 
-    A number is `resolved` when in every draw the bars that count stand well over the threshold and the next
-    well under it, and a graph of `check` neighbours counts as many (`resolution.doubt`). None of this can
+    A number is `resolved` when in the median draw the bars that count stand well over the threshold and the
+    next well under it, and a graph of `check` neighbours counts as many (`resolution.doubt`). None of this can
     expose a real short cut: where two places look alike the cloud itself has another shape. A second sense
     can (`cogmap.evaluation.homology_of_map`).
 
