@@ -120,9 +120,9 @@ def betti(
     and each Betti number is the majority's, the smallest of a tie.
 
     A number is `resolved` when in the median draw the bars that count stand well over the threshold and the
-    next well under it, and a graph of `check` neighbours counts as many (`resolution.doubt`). None of this can
-    expose a real short cut: where two places look alike the cloud itself has another shape. A second sense
-    can (`cogmap.evaluation.homology_of_map`).
+    next well under it, and a graph of `check` neighbours counts as many (`resolution.doubt`). None of this
+    can expose a real short cut: where two places look alike the cloud itself has another shape. A second
+    sense can (`cogmap.evaluation.homology_of_map`).
 
     In the geodesic metric the pieces are those of the neighbour graph. In the others a piece is what a gap
     wider than the threshold sets apart, if it holds at least 1 % of the points; else it is left out.
