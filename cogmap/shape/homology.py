@@ -119,10 +119,10 @@ def betti(
     seen in the same way (`betti_thresholds.threshold`). This is repeated from `draws` random first landmarks,
     and each Betti number is the majority's, the smallest of a tie.
 
-    A number is `resolved` when in every draw the bars that count stand well over the threshold and the next
-    well under it, and a graph of `check` neighbours counts as many (`resolution.doubt`). None of this can
-    expose a real short cut: where two places look alike the cloud itself has another shape. A second sense
-    can (`cogmap.evaluation.homology_of_map`).
+    A number is `resolved` when in the median draw the bars that count stand well over the threshold and the
+    next well under it, and a graph of `check` neighbours counts as many (`resolution.doubt`). None of this
+    can expose a real short cut: where two places look alike the cloud itself has another shape. A second
+    sense can (`cogmap.evaluation.homology_of_map`).
 
     In the geodesic metric the pieces are those of the neighbour graph. In the others a piece is what a gap
     wider than the threshold sets apart, if it holds at least 1 % of the points; else it is left out.
@@ -144,7 +144,7 @@ def betti(
         Of every point in the neighbour graph; 15, because fewer make false loops.
     check
         Neighbours of every point in a second graph, which is looked at once and must tell the same; None
-        looks at no other. Without effect where no neighbours are sought.
+        looks at no other. Without effect where no neighbours are sought, or there are not so many points.
     landmarks
         How many for pieces and loops, and how many of these for voids.
     draws

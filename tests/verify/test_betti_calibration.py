@@ -1,4 +1,4 @@
-"""`make verify`: no Betti number of a cloud of known holes is wrong and resolved, and most are right and so."""
+"""`make verify`: of clouds of known holes no Betti number is resolved and wrong, and most are resolved."""
 
 import sys
 
