@@ -47,3 +47,17 @@ def von_mises() -> Callable[..., np.ndarray]:
         return 10 * np.exp(kappa * (np.cos(headings - preferred) - 1))
 
     return rate
+
+
+@pytest.fixture
+def hexagonal() -> Callable[..., np.ndarray]:
+    """A grid cell's rates in (0, 1]: three plane waves whose crests cross at 60°."""
+
+    def rate(
+        positions: np.ndarray, spacing: float, turn: float = 0.0, phase: tuple[float, float] = (0.0, 0.0)
+    ) -> np.ndarray:
+        angles = turn + np.deg2rad([30, 90, 150])
+        along = (positions - phase) @ np.stack([np.cos(angles), np.sin(angles)])
+        return (np.cos(4 * np.pi / (np.sqrt(3) * spacing) * along).sum(axis=1) + 1.5) / 4.5
+
+    return rate
