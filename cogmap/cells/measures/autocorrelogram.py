@@ -38,7 +38,9 @@ def autocorrelograms(maps: RateMaps) -> Float[np.ndarray, "cells lags_y lags_x"]
     # The other map's sums are those of the opposite shift.
     ahead, squares_ahead = sums[:, ::-1, ::-1], squares[:, ::-1, ::-1]
     spread, spread_ahead = count * squares - sums**2, count * squares_ahead - ahead**2
-    least = 1e-9 * (count.max() * rates.var(axis=(1, 2), keepdims=True)) * count
+    # What varies less than this is constant: the rest is rounding.
+    size = 1e-9 * np.sum(rates**2, axis=(1, 2)) + 1e-18 * np.sum(maps.patterns**2, axis=1)
+    least = count * size[:, None, None]
     enough = (count >= LEAST_OVERLAP) & (np.minimum(spread, spread_ahead) > least)
     scale = np.sqrt(np.where(enough, spread * spread_ahead, 0.0))
     return np.clip(ratio(count * products - sums * ahead, scale), -1.0, 1.0)

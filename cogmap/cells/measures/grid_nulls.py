@@ -29,7 +29,7 @@ def band_noise(maps: RateMaps, rng: np.random.Generator) -> Iterator[RateMaps]:
     power = (member @ np.abs(spectrum.reshape(len(maps), -1).T) ** 2).T / member.sum(axis=1)
     filters = np.sqrt(power)[:, band].reshape(spectrum.shape)
     while True:
-        white = fft.fft2(rng.standard_normal((ny, nx)))
+        white = fft.fft2(rng.standard_normal((ny, nx)), norm="ortho")
         yield replace(maps, rates=np.where(maps.visited, fft.ifft2(filters * white).real, np.nan))
 
 
