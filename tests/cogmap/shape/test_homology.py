@@ -56,7 +56,7 @@ def two_discs(n: int, rng: np.random.Generator) -> np.ndarray:
 
 
 def grid_module(n: int, rng: np.random.Generator) -> np.ndarray:
-    """Roots of the rates of 25 ideal grid cells of one spacing and orientation, whose phases fill its cell."""
+    """Roots of the rates of 25 ideal grid cells of one spacing and orientation, whose phases are spread."""
     axes = np.array([[1, 0], [0.5, np.sqrt(3) / 2]])
     away = rng.uniform(-3, 3, (n, 1, 2)) - np.argwhere(np.ones((5, 5))) / 5 @ axes
     crests = np.linalg.inv(axes) @ [[1, 0, -1], [0, 1, 1]]
