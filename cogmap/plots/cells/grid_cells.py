@@ -51,7 +51,8 @@ def plot_grid_cells(maps: RateMaps, statistics: pd.DataFrame, count: int = 8) ->
         known = np.isfinite(shown["spacing_m"])
         spacing = f"\nspacing {shown['spacing_m']:.2f} m" if known else "\nno lattice"
         named = {"x": "x (m)", "y": "y (m)"} if column == 0 else {}
-        tidy(room, title=f"gridness {shown['gridness']:.2f}{spacing}", size=TINY, **named)
+        said = f"gridness {shown['gridness']:.2f}{spacing}".replace("-", "−")
+        tidy(room, title=said, size=TINY, **named)
         room.title.set_color(INK if shown["passing"] else BAD)
         part = maps[cell] / (peak if peak > 0 else 1.0)
         drawn = room.imshow(
