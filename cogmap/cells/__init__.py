@@ -17,8 +17,11 @@ from cogmap.cells.decoding.decoders import (
     position_errors,
 )
 from cogmap.cells.decoding.patterns import pattern_correlations, population_vector_correlations
+from cogmap.cells.measures.autocorrelogram import autocorrelograms
 from cogmap.cells.measures.coherence import coherence
 from cogmap.cells.measures.fields import PlaceFields, place_coverage, place_fields
+from cogmap.cells.measures.grid import grid_statistics
+from cogmap.cells.measures.gridness import Lattice, gridness, lattice
 from cogmap.cells.measures.heading import heading_statistics
 from cogmap.cells.measures.information import selectivity, sparsity, spatial_information
 from cogmap.cells.measures.place import place_statistics
@@ -33,21 +36,26 @@ from cogmap.cells.rates.tuning import Tuning, mean_vectors, tuning_curves, tunin
 __all__ = [
     "BinEdges",
     "HeadingFrame",
+    "Lattice",
     "MapFrame",
     "PlaceFields",
     "RateMaps",
     "RayleighTest",
     "ShuffleTest",
     "Tuning",
+    "autocorrelograms",
     "bin_edges",
     "coherence",
     "curve_stability",
     "decode_positions",
     "fit_heading_frame",
     "fit_map_frame",
+    "grid_statistics",
+    "gridness",
     "heading_centres",
     "heading_errors",
     "heading_statistics",
+    "lattice",
     "likeliest",
     "map_stability",
     "mean_vectors",

@@ -88,8 +88,12 @@ class CellMetrics:
 
     @property
     def table(self) -> pd.DataFrame:
-        """Columns of `place_statistics` and `heading_statistics`, `place_passing` and `heading_passing`."""
+        """Columns of `place_statistics` and `heading_statistics`, `place_passing` and `heading_passing`.
+
+        The spatial information of the second is `spatial_information_beyond_heading`.
+        """
         mine = self.heading[["preferred_direction_rad", "mean_vector_length", "drift_deg"]]
+        mine = mine.assign(spatial_information_beyond_heading=self.heading["spatial_information"])
         table = self.place.drop(columns="passing").join(mine)
         return table.assign(place_passing=self.place["passing"], heading_passing=self.heading["passing"])
 

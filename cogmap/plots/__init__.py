@@ -4,6 +4,7 @@ from cogmap.plots.cells.afferents import plot_afferents
 from cogmap.plots.cells.cell_types import plot_cell_types
 from cogmap.plots.cells.cue_control import plot_cue_control
 from cogmap.plots.cells.examples import plot_examples
+from cogmap.plots.cells.grid_cells import plot_grid_cells
 from cogmap.plots.cells.heading_cells import plot_tuning_curves
 from cogmap.plots.cells.learning_curves import plot_courses
 from cogmap.plots.cells.place_cells import plot_rate_maps
@@ -41,6 +42,7 @@ __all__ = [
     "plot_embedding",
     "plot_examples",
     "plot_goals",
+    "plot_grid_cells",
     "plot_likeness",
     "plot_localisation",
     "plot_metric_map",

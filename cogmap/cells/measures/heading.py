@@ -6,7 +6,8 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Complex, Float
 
-from cogmap.cells.measures.information import spatial_information
+from cogmap.cells.measures.information import information_per_spike
+from cogmap.cells.measures.place_by_direction import place_by_direction
 from cogmap.cells.measures.rayleigh import rayleigh_test
 from cogmap.cells.measures.stability import curve_stability
 from cogmap.cells.rates.bins import BinEdges
@@ -62,8 +63,9 @@ def heading_statistics(
         occupancy-normalised bins), `rayleigh_p` (of as many spikes as the rates make), `stability`
         (correlation of the curves of both halves), `drift_deg` (median
         over 3×3 blocks of the room of the angle between the preferred direction there, from 12 bins, and
-        everywhere; blocks with fewer than 100 views are left out), `spatial_information` (bit/spike),
-        `passing`. NaN where a silent cell has no value.
+        everywhere; blocks with fewer than 100 views are left out), `spatial_information` (bit/spike, of the
+        map in `place_by_direction`: in a plain one the directions in which each place was seen tell of the
+        place, .4 bit/spike with 2,500 views of 9×6 m), `passing`. NaN where a silent cell has no value.
 
     Raises
     ------
@@ -75,7 +77,9 @@ def heading_statistics(
     check_seconds(seconds)
     curves = tuning_curves(rates, headings)
     vector = mean_vectors(curves)
-    length, information = np.abs(vector), spatial_information(maps)
+    everywhere = np.broadcast_to(maps.visited, maps.rates.shape)
+    apart = place_by_direction(rates, positions, headings, maps, everywhere, bins=curves.shape[1])
+    length, information = np.abs(vector), information_per_spike(apart.exposure, apart.rates)
     drift = np.rad2deg(_drift(rates, positions, headings, vector))
     columns = {
         "preferred_direction_rad": np.angle(vector),

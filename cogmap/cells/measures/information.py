@@ -18,8 +18,15 @@ def spatial_information(maps: RateMaps) -> Float[np.ndarray, "cells"]:
     Source: Skaggs, McNaughton, Gothard & Markus 1993, An information-theoretic approach to deciphering the
     hippocampal code, NIPS 5.
     """
-    occupancy, gain = _gain(maps)
-    return np.asarray(np.sum(occupancy * special.xlogy(gain, gain), axis=1) / np.log(2))
+    return information_per_spike(maps.occupancy[maps.visited], maps.patterns)
+
+
+def information_per_spike(
+    occupancy: Float[np.ndarray, "*cells bins"], rates: Float[np.ndarray, "cells bins"]
+) -> Float[np.ndarray, "cells"]:
+    """Information in bit/spike about bins that are visited so often, for all cells or for each."""
+    part, gain = _gain(occupancy, rates)
+    return np.asarray(np.sum(part * special.xlogy(gain, gain), axis=1) / np.log(2))
 
 
 def sparsity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
@@ -27,8 +34,8 @@ def sparsity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
 
     Source: Skaggs, McNaughton, Wilson & Barnes 1996, Hippocampus 6.
     """
-    occupancy, gain = _gain(maps)
-    return np.asarray(1 / np.sum(occupancy * gain**2, axis=1))
+    part, gain = _gain(maps.occupancy[maps.visited], maps.patterns)
+    return np.asarray(1 / np.sum(part * gain**2, axis=1))
 
 
 def selectivity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
@@ -36,11 +43,12 @@ def selectivity(maps: RateMaps) -> Float[np.ndarray, "cells"]:
 
     Source: Skaggs, McNaughton, Wilson & Barnes 1996, Hippocampus 6.
     """
-    return np.asarray(_gain(maps)[1].max(axis=1))
+    return np.asarray(_gain(maps.occupancy[maps.visited], maps.patterns)[1].max(axis=1))
 
 
-def _gain(maps: RateMaps) -> tuple[Float[np.ndarray, "bins"], Float[np.ndarray, "cells bins"]]:
-    """Occupancy as a probability and rates over their mean, in the visited bins."""
-    occupancy = maps.occupancy[maps.visited] / maps.occupancy.sum()
-    mean = np.sum(occupancy * maps.patterns, axis=1, keepdims=True)
-    return occupancy, ratio(maps.patterns, mean)
+def _gain(
+    occupancy: Float[np.ndarray, "*cells bins"], rates: Float[np.ndarray, "cells bins"]
+) -> tuple[Float[np.ndarray, "*cells bins"], Float[np.ndarray, "cells bins"]]:
+    """Occupancy as a probability, and rates over their mean."""
+    part = ratio(occupancy, occupancy.sum(axis=-1, keepdims=True))
+    return part, ratio(rates, np.sum(part * rates, axis=1, keepdims=True))

@@ -9,8 +9,8 @@ from jaxtyping import Float
 from cogmap.cells.measures.coherence import coherence
 from cogmap.cells.measures.fields import PlaceFields, place_fields
 from cogmap.cells.measures.information import selectivity, sparsity, spatial_information
+from cogmap.cells.measures.place_by_direction import place_by_direction
 from cogmap.cells.measures.stability import map_stability
-from cogmap.cells.rates.bins import heading_bin, means_by_bin
 from cogmap.cells.rates.maps import RateMaps, rate_maps
 from cogmap.cells.rates.tuning import mean_vectors
 from cogmap.inputs import check_samples
@@ -59,8 +59,9 @@ def place_statistics(
         `peak_rate_hz` of the map, `mean_rate_hz` over the views, `fields`, `field_area_m2` and `centre_x_m`,
         `centre_y_m` of the largest field, `spatial_information` (bit/spike), `sparsity`, `selectivity`,
         `coherence` (of the map without smoothing), `stability` (correlation of the maps of both halves),
-        `in_field_direction_vector` (length of the mean vector over the views inside the fields, 12
-        occupancy-normalised bins), `passing`. NaN where a silent cell or one without a field has no value.
+        `in_field_direction_vector` (length of the mean vector inside the fields, 12 bins of the curve in
+        `place_by_direction`: a plain one tells where in the field each direction was looked in), `passing`.
+        NaN where a silent cell or one without a field has no value.
 
     Raises
     ------
@@ -72,9 +73,8 @@ def place_statistics(
     fields = place_fields(maps) if fields is None else fields
     edges = maps.edges
     unsmoothed = rate_maps(rates, positions, edges.side, 0.0, edges=edges, visited=maps.visited)
-    place, bins = edges.bin_of(positions), 12
-    inside = fields.masks.reshape(len(maps), -1)[:, place].T & (place >= 0)[:, None]
-    direction = np.abs(mean_vectors(means_by_bin(heading_bin(headings, bins), bins, rates, inside).T))
+    apart = place_by_direction(rates, positions, headings, maps, fields.masks, bins=12)
+    direction = np.abs(mean_vectors(apart.gains))
     information, single = spatial_information(maps), fields.number == 1
     columns = {
         "peak_rate_hz": np.nanmax(maps.rates, axis=(1, 2)),

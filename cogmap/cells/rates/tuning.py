@@ -47,18 +47,35 @@ def tuning_curves(
 
 
 def mean_vectors(curves: Float[np.ndarray, "cells bins"]) -> Complex[np.ndarray, "cells"]:
-    """Mean vector Σ λ e^{iθ} / Σ λ of tuning curves, NaN for a silent cell; empty bins are left out.
+    """Mean vector Σ λ e^{iθ} / Σ λ of tuning curves, NaN for a silent cell.
 
     Its length is 0 for a cell that knows no direction and 1 for one that fires in a single bin, its argument
-    is the preferred direction in rad.
+    is the preferred direction in rad. An empty bin takes the rate of the first harmonic a + b cos θ + c sin θ
+    that fits the others best: without empty bins the vector is that of this harmonic, (b + ic) / 2a, and
+    leaving bins out would give any cell a direction away from them.
 
     Source: Batschelet 1981, Circular Statistics in Biology, chapter 1.
     """
     direction = heading_centres(curves.shape[1])
-    known = np.nan_to_num(curves)
+    known = _filled(curves, direction)
     total = known.sum(axis=1)
     vector = np.sum(known * np.exp(1j * direction), axis=1)
     return ratio(vector, total)
+
+
+def _filled(
+    curves: Float[np.ndarray, "cells bins"], direction: Float[np.ndarray, "bins"]
+) -> Float[np.ndarray, "cells bins"]:
+    """Give empty bins the first harmonic of the others, at least 0 Hz; leave all else as it is."""
+    empty = np.isnan(curves)
+    if not empty.any():
+        return curves
+    harmonic = np.stack([np.ones_like(direction), np.cos(direction), np.sin(direction)], axis=1)
+    gram = np.einsum("cb,bi,bj->cij", (~empty).astype(float), harmonic, harmonic)
+    # Bins on one side of the circle do not tell the rate on the other: what they leave open is taken as 0.
+    inverse = np.linalg.pinv(gram, rcond=0.01, hermitian=True)
+    fitted = np.einsum("cij,bj,ck,ki->cb", inverse, harmonic, np.nan_to_num(curves), harmonic, optimize=True)
+    return np.where(empty, np.maximum(fitted, 0.0), curves)
 
 
 def tuning_widths(curves: Float[np.ndarray, "cells bins"]) -> Float[np.ndarray, "cells"]:

@@ -8,6 +8,7 @@ from typing import Any
 from matplotlib.figure import Figure
 
 from arena import Brownian, Motion, Track
+from cogmap.cells.measures.place import MOST_DIRECTION
 from cogmap.evaluation.ground_truth import CellMetrics, as_one_table
 from cogmap.evaluation.populations import competing_cells, trust_report
 from cogmap.experiments import Conditions, Result, Trial, experiment
@@ -59,5 +60,5 @@ def directionality(conditions: Conditions) -> Result:
 def _share(found: CellMetrics) -> float:
     """Share of directional cells among those with a field; 0 without any."""
     vectors = found.place["in_field_direction_vector"].dropna()
-    # So long a vector is that of a cell that fires three times as much one way as the other.
-    return float((vectors > 0.5).mean()) if len(vectors) else 0.0
+    # So long a vector is that of a cell that fires three times as much one way as the other, 2 + cos θ.
+    return float((vectors > MOST_DIRECTION).mean()) if len(vectors) else 0.0

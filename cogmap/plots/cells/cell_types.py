@@ -20,9 +20,9 @@ def plot_cell_types(cells: pd.DataFrame) -> Figure:
     Parameters
     ----------
     cells
-        `population`, `spatial_information` (bit/spike), `in_field_direction_vector`, `mean_vector_length`,
-        `place_passing` and `heading_passing`, a row a cell. A cell without a field has no in-field vector and
-        is missing above.
+        `population`, `spatial_information` and `spatial_information_beyond_heading` (bit/spike),
+        `in_field_direction_vector`, `mean_vector_length`, `place_passing` and `heading_passing`, a row a
+        cell. A cell without a field has no in-field vector and is missing above.
 
     Raises
     ------
@@ -35,8 +35,8 @@ def plot_cell_types(cells: pd.DataFrame) -> Figure:
         raise CogmapError("no cells to draw; give a table with at least one")
     most = max(1.08 * float(cells["spatial_information"].fillna(0.0).max()), 1.0)
     kinds = {
-        "place": ("in_field_direction_vector", "in-field direction vector"),
-        "heading": ("mean_vector_length", "mean vector length"),
+        "place": ("in_field_direction_vector", "in-field direction vector", "spatial_information"),
+        "heading": ("mean_vector_length", "mean vector length", "spatial_information_beyond_heading"),
     }
     # Where a cell of each kind must lie to pass: from left to right, from low to high.
     criteria = (-0.02, MOST_DIRECTION, LEAST_INFORMATION, most), (LEAST_VECTOR, 1.02, 0.0, MOST_INFORMATION)
@@ -44,7 +44,8 @@ def plot_cell_types(cells: pd.DataFrame) -> Figure:
     figure, panels = new_panels(width, 2 * panel + 0.4, 2, len(names), squeeze=False, sharey=True)
     for column, name in zip(panels.T, names, strict=True):
         told = "spatial information (bit/spike)" if name == names[0] else ""
-        for axes, (kind, (key, label)), criterion in zip(column, kinds.items(), criteria, strict=True):
+        rows = zip(column, kinds.items(), criteria, strict=True)
+        for axes, (kind, (key, label, information)), criterion in rows:
             left, right, low, high = criterion
             mine = cells[cells["population"] == name]
             passing = mine[f"{kind}_passing"]
@@ -54,6 +55,6 @@ def plot_cell_types(cells: pd.DataFrame) -> Figure:
             outline = [left, right, right, left, left], [low, low, high, high, low]
             axes.plot(*outline, color=SOFT, linewidth=0.6)
             colours = passing.map({True: GOOD, False: BAD})
-            axes.scatter(mine[key], mine["spatial_information"], s=7, c=colours, alpha=0.7, linewidths=0)
+            axes.scatter(mine[key], mine[information], s=7, c=colours, alpha=0.7, linewidths=0)
             axes.set(xlim=(-0.02, 1.02), ylim=(0, most))
     return figure

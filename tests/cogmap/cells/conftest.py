@@ -18,6 +18,16 @@ def wander() -> Callable[..., Samples]:
 
 
 @pytest.fixture
+def hall() -> Samples:
+    """2,500 views in a 9×6 m room, on straight runs of five: each place was seen in few directions."""
+    rng = np.random.default_rng(0)
+    starts, headings = rng.uniform([-4.5, -3], [4.5, 3], (500, 1, 2)), rng.uniform(-np.pi, np.pi, 500)
+    ahead = 0.12 * np.stack([np.cos(headings), np.sin(headings)], axis=1)[:, None]
+    positions = (starts + np.arange(5)[:, None] * ahead).reshape(-1, 2)
+    return np.clip(positions, [-4.5, -3], [4.5, 3]), np.repeat(headings, 5)
+
+
+@pytest.fixture
 def bump() -> Callable[..., np.ndarray]:
     """Gaussian tuning to place: 10 Hz at the centre."""
 
@@ -35,5 +45,19 @@ def von_mises() -> Callable[..., np.ndarray]:
 
     def rate(headings: np.ndarray, preferred: float | np.ndarray = 0.5, kappa: float = 4.0) -> np.ndarray:
         return 10 * np.exp(kappa * (np.cos(headings - preferred) - 1))
+
+    return rate
+
+
+@pytest.fixture
+def hexagonal() -> Callable[..., np.ndarray]:
+    """A grid cell's rates in (0, 1]: three plane waves whose crests cross at 60°."""
+
+    def rate(
+        positions: np.ndarray, spacing: float, turn: float = 0.0, phase: tuple[float, float] = (0.0, 0.0)
+    ) -> np.ndarray:
+        angles = turn + np.deg2rad([30, 90, 150])
+        along = (positions - phase) @ np.stack([np.cos(angles), np.sin(angles)])
+        return (np.cos(4 * np.pi / (np.sqrt(3) * spacing) * along).sum(axis=1) + 1.5) / 4.5
 
     return rate

@@ -55,11 +55,20 @@ def two_discs(n: int, rng: np.random.Generator) -> np.ndarray:
     return X
 
 
+def grid_module(n: int, rng: np.random.Generator) -> np.ndarray:
+    """Roots of the rates of 25 ideal grid cells of one spacing and orientation, whose phases are spread."""
+    axes = np.array([[1, 0], [0.5, np.sqrt(3) / 2]])
+    away = rng.uniform(-3, 3, (n, 1, 2)) - np.argwhere(np.ones((5, 5))) / 5 @ axes
+    crests = np.linalg.inv(axes) @ [[1, 0, -1], [0, 1, 1]]
+    return np.exp((np.cos(2 * np.pi * away @ crests).sum(axis=2) - 3) / 2)
+
+
 SPACES: dict[Sampler, tuple[int, int, int]] = {
     circle: (1, 1, 0),
     cylinder: (1, 1, 0),
     solid_torus: (1, 1, 0),
     torus: (1, 2, 1),
+    grid_module: (1, 2, 1),
     disc: (1, 0, 0),
     ball: (1, 0, 0),
     sphere: (1, 0, 1),

@@ -12,6 +12,8 @@ from cogmap.cells.measures.rayleigh import rayleigh_test
 from cogmap.cells.rates.maps import rate_maps
 from cogmap.errors import CogmapError
 
+Samples = tuple[np.ndarray, np.ndarray]
+
 
 @pytest.fixture
 def table(wander: Callable, bump: Callable, von_mises: Callable) -> pd.DataFrame:
@@ -30,6 +32,15 @@ def table(wander: Callable, bump: Callable, von_mises: Callable) -> pd.DataFrame
 
 def test_only_the_heading_cell_passes(table: pd.DataFrame) -> None:
     assert table.index[table["passing"]].tolist() == ["heading"]
+
+
+def test_ideal_cells_pass_in_a_hall_seen_by_few_views_and_placed_ones_do_not(
+    hall: Samples, von_mises: Callable
+) -> None:
+    ideal = von_mises(hall[1][:, None], np.linspace(-np.pi, np.pi, 20), 5.0)
+    assert heading_statistics(ideal, *hall)["passing"].all()
+    placed = ideal * np.exp(1.5 * np.sin(2 * hall[0][:, :1]))
+    assert not heading_statistics(placed, *hall)["passing"].any()
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,25 @@ def test_empty_bins_are_unknown_and_silent_cells_have_no_direction() -> None:
     curves = tuning_curves(np.array([[1.0, 0], [3, 0], [0, 0]]), headings)
     assert np.isnan(curves).sum() == 2 * 34
     np.testing.assert_array_equal(curves[0][~np.isnan(curves[0])], [2, 0])
-    np.testing.assert_allclose(np.abs(mean_vectors(curves)), [1, np.nan])
+    np.testing.assert_array_equal(np.isnan(mean_vectors(curves)), [False, True])
+
+
+def test_empty_bins_take_the_first_harmonic_of_the_others() -> None:
+    harmonic = 2 + np.cos(CENTRES - 0.7)
+    curves = np.stack([harmonic, np.full(36, 3.0), 10 * np.exp(5 * (np.cos(CENTRES - 2) - 1))])
+    curves[:, 5:11] = curves[1, 24:] = np.nan
+    flat, vector = np.abs(mean_vectors(curves))[[1, 0]]
+    assert flat == pytest.approx(0, abs=1e-12)
+    assert vector == pytest.approx(0.25)
+    # No rate is below zero, and a direction away from the gap is found as without it.
+    full = mean_vectors(np.where(np.isnan(curves), 0.0, curves))[2]
+    np.testing.assert_allclose(mean_vectors(curves)[2], full, atol=0.03)
+
+
+def test_what_bins_on_one_side_do_not_tell_counts_as_a_direction() -> None:
+    curve = np.full((1, 12), np.nan)
+    curve[0, :3] = 4.0
+    assert np.abs(mean_vectors(curve)) > 0.25
 
 
 def peer_width(curve: np.ndarray) -> float:

@@ -15,6 +15,7 @@ def cells() -> pd.DataFrame:
         {
             "population": ["seeing"] * 30 + ["smelling"] * 20,
             "spatial_information": rng.uniform(0, 3, 50),
+            "spatial_information_beyond_heading": rng.uniform(0, 2, 50),
             "in_field_direction_vector": np.where(np.arange(50) % 7 == 0, np.nan, rng.uniform(0, 1, 50)),
             "mean_vector_length": rng.uniform(0, 1, 50),
             "place_passing": np.arange(50) % 2 == 0,
@@ -26,13 +27,13 @@ def cells() -> pd.DataFrame:
 def test_every_cell_is_where_its_statistics_say_in_its_colour(cells: pd.DataFrame) -> None:
     figure = plot_cell_types(cells)
     above, below = np.reshape(figure.axes, (2, 2))
-    for axes, key, kind in (
-        (above[1], "in_field_direction_vector", "place"),
-        (below[1], "mean_vector_length", "heading"),
+    for axes, key, information, kind in (
+        (above[1], "in_field_direction_vector", "spatial_information", "place"),
+        (below[1], "mean_vector_length", "spatial_information_beyond_heading", "heading"),
     ):
         mine = cells[cells["population"] == "smelling"]
         (dots,) = (found for found in axes.collections if len(found.get_offsets()) > 1)
-        expected = mine[[key, "spatial_information"]].to_numpy()
+        expected = mine[[key, information]].to_numpy()
         drawn = dots.get_offsets()
         assert np.array_equal(np.ma.getmaskarray(drawn).any(axis=1), np.isnan(expected).any(axis=1))
         np.testing.assert_allclose(np.ma.compress_rows(drawn), expected[~np.isnan(expected).any(axis=1)])
