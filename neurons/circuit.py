@@ -8,6 +8,7 @@ from torch import Tensor, nn
 
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.metric_map import MetricMap
+from neurons.atlas.synchronisation import Compass
 from neurons.layers.afferents import Afferents
 from neurons.layers.charts import Charts
 from neurons.layers.heading_cells import HeadDirectionCells
@@ -65,6 +66,7 @@ class Circuit(nn.Module):
         self.heading = HeadDirectionCells(heading_cells, charts, generator=generator)
         self.metric_map = MetricMap(place_cells, odorants)
         self.agreement: Tensor = nn.Buffer(torch.full((2,), torch.nan))
+        self.connected: Tensor = nn.Buffer(torch.zeros((), dtype=torch.bool))
 
     def recall(self, strips: Float[Tensor, "views features"]) -> Recalled:
         """Tell heading and smell from sight."""
@@ -75,6 +77,13 @@ class Circuit(nn.Module):
     def atlas_diagnosis(self) -> str:
         """Say in what the charts do not agree, or nothing when they do."""
         signs, phases = self.agreement.tolist()
+        return self._doubt(signs, phases)
+
+    def agrees(self, compass: Compass) -> bool:
+        """Whether a compass would pass the guard."""
+        return not self._doubt(compass.sign_agreement, compass.eigenvalue)
+
+    def _doubt(self, signs: float, phases: float) -> str:
         if not math.isfinite(phases):
             return "no loop of its charts closes after a turn; use more charts or more views"
         if phases < self.least_eigenvalue:
@@ -99,4 +108,5 @@ class Circuit(nn.Module):
         # preferred directions stay as drawn: a map that was saved and loaded has no generator to go on with
         self.heading.afferents = Afferents(count, len(self.heading.preferred))
         self.agreement.fill_(torch.nan)
+        self.connected.zero_()
         self.to(self.agreement.device)  # where the layers are that these replace

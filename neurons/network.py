@@ -108,7 +108,13 @@ class Network(Circuit):
         """Say why this map cannot be trusted, or nothing when it can."""
         if self.stage != self.stages[-1]:
             return f"it is still in its {self.stage.name!r} stage; show it more views"
-        return self.atlas_diagnosis()
+        reason = self.atlas_diagnosis()
+        if not reason and bool(self.connected) and self.metric_map.diagnosis():
+            return (
+                "its charts agree only with a connection that was learnt, and no metric map confirms it: "
+                f"{self.metric_map.diagnosis()}"
+            )
+        return reason
 
     def metric_diagnosis(self) -> str:
         """Say why there is no metric map, or nothing when there is one."""

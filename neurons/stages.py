@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, TypeVar
 
 import torch
@@ -11,6 +11,7 @@ from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from neurons.atlas.atlas import Atlas
+from neurons.atlas.connection import LearntConnection
 from neurons.atlas.heading_axis import heading_axes
 from neurons.atlas.synchronisation import synchronise
 from neurons.circuit import Circuit
@@ -184,11 +185,14 @@ class OlfactionStage(CodedStage):
     ----------
     winners
         Charts that learn the smell of a view: twice those that are read, so that no chart lacks views.
+    connection
+        What is tried while charts do not agree, before any is added; None leaves them as they are.
     """
 
     name = "olfaction"
     sums = ("olfaction.gram", "olfaction.cross")
     winners: int = 16
+    connection: LearntConnection | None = field(default_factory=LearntConnection)
 
     def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:
         """Add views to the regressions of the charts near them, with Gaussian weights."""
@@ -206,15 +210,20 @@ class OlfactionStage(CodedStage):
             return ChartStage.name
         return None
 
-    @staticmethod
-    def _orient(circuit: Circuit) -> None:
+    def _orient(self, circuit: Circuit) -> None:
         atlas = Atlas.of(circuit.charts.points)
         intercepts, jacobians = circuit.olfaction.solve()
         axes = heading_axes(circuit.charts.tangents, jacobians, atlas)
         compass = None
         with suppress(NeuronsError):  # no ring closes: `agreement` stays NaN, which `diagnosis` tells
             compass = synchronise(circuit.charts.centres, axes, atlas)
+        if self.connection and not (compass and circuit.agrees(compass)):
+            gradients = circuit.charts.tangents.mT @ jacobians
+            further = self.connection.compasses(circuit.charts.centres, axes, gradients, intercepts, atlas)
+            compass = next(filter(circuit.agrees, further), compass)
+        if compass:
             circuit.agreement = circuit.agreement.new_tensor([compass.sign_agreement, compass.eigenvalue])
+            circuit.connected.fill_(compass.walking is not None)
         circuit.readout.solve(atlas, compass, intercepts, jacobians)
 
 

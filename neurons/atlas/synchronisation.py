@@ -1,7 +1,7 @@
 """Synchronisation of signs, then phases, over the atlas: lateral weights turn local axes into one compass."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -32,6 +32,8 @@ class Compass:
         Σ s_k s_j n_k·n_j / Σ |n_k·n_j| over the overlaps; 1 when the ring can be oriented.
     eigenvalue
         Top eigenvalue of the phase synchronisation; 1 when every overlap agrees.
+    walking
+        By how much walking turns the compass, rad per unit of code; None where it is taken to turn nothing.
     """
 
     axes: Float[Tensor, "charts components"]
@@ -39,21 +41,35 @@ class Compass:
     phases: Float[Tensor, "charts"]
     sign_agreement: float
     eigenvalue: float
+    walking: Float[Tensor, "charts components"] | None = None
+
+    @property
+    def turning(self) -> Float[Tensor, "charts components"]:
+        """By how much the heading changes in each chart, rad per unit of code."""
+        along = self.scale * self.axes
+        return along if self.walking is None else along + self.walking
 
 
 @dataclass(frozen=True)
-class _Overlaps:
+class Overlaps:
     """The atlas as a sparse Hermitian matrix of degree-normalised weights, (j, k) conjugate to (k, j)."""
 
     edges: Int[np.ndarray, "edges 2"]
     count: int
+    strength: Float[np.ndarray, "edges"]
+    """How much each overlap counts."""
+
+    @property
+    def degree(self) -> Float[np.ndarray, "charts"]:
+        """Strengths of the overlaps of each chart together."""
+        return np.bincount(self.edges.T.ravel(), np.tile(self.strength, 2), self.count)
 
     def top(self, weight: Complex[np.ndarray, "edges"]) -> tuple[float, Complex[np.ndarray, "charts"]]:
         """Largest eigenvalue and its vector, by inverse iteration just above 1, the bound of the spectrum."""
         k, j = self.edges.T
-        degree = np.bincount(self.edges.ravel(), minlength=self.count)
+        degree = self.degree
         # by degrees: the spectrum is bounded by 1, and charts with many overlaps do not rule
-        entry = weight / np.sqrt(degree[k] * degree[j])
+        entry = self.strength * weight / np.sqrt(degree[k] * degree[j])
         index = (np.r_[k, j], np.r_[j, k])
         matrix = csc_array((np.r_[entry, entry.conj()], index), shape=(self.count, self.count))
         # the eigenvector where no weight has a phase: a start that needs no random numbers
@@ -68,6 +84,7 @@ def synchronise(
     axes: Float[Tensor, "charts components"],
     atlas: Atlas,
     *,
+    strength: Float[np.ndarray, "edges"] | None = None,
     cells: int = 250,
     scales: tuple[float, float, int] = (0.03, 1.5, 80),
 ) -> Compass:
@@ -84,6 +101,8 @@ def synchronise(
     ----------
     centres, axes, atlas
         C_k, n_k up to sign, and the overlaps.
+    strength
+        How much each overlap counts where axes and scale are sought; all alike unless told.
     cells
         Groups of charts, turning together, on which the scale is sought: dense eigenvalues of a few hundred
         are fast.
@@ -100,7 +119,8 @@ def synchronise(
     ----------
     Singer (2011), Angular synchronization by eigenvectors and semidefinite programming. ACHA 30.
     """
-    overlaps = _Overlaps(atlas.edges.cpu().numpy(), len(centres))
+    edges = atlas.edges.cpu().numpy()
+    overlaps = Overlaps(edges, len(centres), np.ones(len(edges)) if strength is None else strength)
     k, j = overlaps.edges.T
     graph = csc_array((np.ones(len(k)), (k, j)), shape=(len(centres),) * 2)
     pieces, _ = connected_components(graph, directed=False)
@@ -115,20 +135,22 @@ def synchronise(
     n = n * sign[:, None]
     signed = sign[k] * sign[j] * agreement
     omega = 0.5 * np.einsum("ec,ec->e", c[j] - c[k], n[k] + n[j])
-    scale, eigenvalue, phases = _close_ring(overlaps, omega, np.geomspace(*scales), cells)
+    scale = _close_ring(overlaps, omega, np.geomspace(*scales), cells)
+    # of all overlaps alike, whatever they counted for: what does not agree must show
+    eigenvalue, vector = replace(overlaps, strength=np.ones(len(edges))).top(np.exp(-1j * scale * omega))
     return Compass(
         axes=torch.from_numpy(n).to(axes),
         scale=scale,
-        phases=torch.from_numpy(phases).to(axes),
+        phases=torch.from_numpy(np.angle(vector)).to(axes),
         sign_agreement=float(signed.sum() / np.abs(agreement).sum()),
         eigenvalue=eigenvalue,
     )
 
 
 def _close_ring(
-    overlaps: _Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"], cells: int
-) -> tuple[float, float, Float[np.ndarray, "charts"]]:
-    """Find the scale at which loops close after one turn; it, the eigenvalue there, and the phases."""
+    overlaps: Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"], cells: int
+) -> float:
+    """Find the scale at which loops close after one turn."""
     # free of the unit of code: 1 is one radian across a typical overlap
     tried = scales / np.sqrt(np.mean(omega**2))
     values: list[float] = []
@@ -142,13 +164,11 @@ def _close_ring(
     # in log c, in which the grid is even: three points, one parabola, no residual
     near = np.log(tried[len(values) - 3 : len(values)])
     bend, slope, _ = np.polyfit(near, values[-3:], 2)
-    scale = float(np.exp(-slope / (2 * bend)))
-    eigenvalue, vector = overlaps.top(np.exp(-1j * scale * omega))
-    return scale, eigenvalue, np.angle(vector)
+    return float(np.exp(-slope / (2 * bend)))
 
 
 def _coarse_eigenvalues(
-    overlaps: _Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"], cells: int
+    overlaps: Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"], cells: int
 ) -> Iterator[float]:
     """Bound the top eigenvalue from below, scale by scale, by Rayleigh and Ritz on cells that turn together.
 
@@ -173,10 +193,10 @@ def _coarse_eigenvalues(
     across = potential[k] + omega - potential[j]
     size = len(roots)
     pair = cell[k] * size + cell[j]
-    degree = np.bincount(cell[overlaps.edges.ravel()], minlength=size)
+    degree = np.bincount(cell, overlaps.degree, size)
     norm = 1 / np.sqrt(np.outer(degree, degree))
     for scale in scales:
-        turn = np.exp(-1j * scale * across)
+        turn = overlaps.strength * np.exp(-1j * scale * across)
         # bincount adds real numbers only, in the order of edges: the same bits every time
         entry = np.bincount(pair, turn.real, size**2) + 1j * np.bincount(pair, turn.imag, size**2)
         half = entry.reshape(size, size) * norm

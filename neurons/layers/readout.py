@@ -92,7 +92,7 @@ class Readout(nn.Module):
         self.intercepts, self.jacobians = intercepts, jacobians
         if compass is not None:
             # the scale goes into the axes once, not into the angle of every view
-            self.phases, self.turning = compass.phases, compass.scale * compass.axes
+            self.phases, self.turning = compass.phases, compass.turning
 
     def excite(self, charts: Charts, codes: Float[Tensor, "views components"]) -> ChartActivity:
         """Activity of the nearest charts."""

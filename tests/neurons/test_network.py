@@ -71,6 +71,16 @@ def test_an_unfinished_network_is_not_to_be_trusted(network: Network) -> None:
     assert network.diagnosis() == network.atlas_diagnosis()
 
 
+def test_a_learnt_connection_is_trusted_only_where_the_metric_map_confirms_it(network: Network) -> None:
+    network.agreement = torch.tensor([1.0, 0.9999])
+    network.views_seen.fill_(network.begins(STAGES[-1].name))
+    network.connected.logical_not_()
+    assert network.metric_map.diagnosis() in network.diagnosis()
+    assert "connection" in network.diagnosis()
+    network.metric_map.cross_validated_r2.fill_(0.95)
+    assert network.diagnosis() == ""
+
+
 @pytest.mark.parametrize(("most", "charts"), [(100, 100), (500, 120), (60, 60)])
 @pytest.mark.parametrize("better", [False, True])
 def test_charts_are_added_while_they_do_not_agree(
@@ -79,11 +89,12 @@ def test_charts_are_added_while_they_do_not_agree(
     found = torch.tensor([1.0, 0.9999 if better else 0.99])
     orient = OlfactionStage._orient
 
-    def disagree(circuit: Circuit) -> None:
-        orient(circuit)
+    def disagree(stage: OlfactionStage, circuit: Circuit) -> None:
+        orient(stage, circuit)
         circuit.agreement = found.clone()
+        circuit.connected.zero_()
 
-    monkeypatch.setattr(OlfactionStage, "_orient", staticmethod(disagree))
+    monkeypatch.setattr(OlfactionStage, "_orient", disagree)
     network.most_charts = most
     while network.stage.name != "cells":
         network.learn(*stream(50, int(network.views_seen)))
