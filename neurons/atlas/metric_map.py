@@ -10,6 +10,10 @@ from neurons.angles import wrap_angle
 from neurons.layers.place_cells import PlaceCells
 
 
+MOST_ITERATIONS, CONVERGED = 20_000, 1e-9
+"""Of the power iteration, and the change of a unit number that ends it."""
+
+
 class MetricReading(NamedTuple):
     """What the metric map reads off smells."""
 
@@ -193,9 +197,12 @@ class _Evidence(NamedTuple):
         placing = torch.view_as_complex(solved.contiguous())
         turns = torch.ones_like(self.ahead[:, 0])
         agreement = self.ahead @ placing
-        for _ in range(100):  # nothing changes any more after about fifty
+        # fifty will do in a room; two that a door joins turn against each other for thousands
+        for _ in range(MOST_ITERATIONS):
             # sgn(0) is 0: a cell without any displacement keeps out of it instead of turning NaN
-            turns = torch.sgn(agreement @ turns)
+            before, turns = turns, torch.sgn(agreement @ turns)
+            if (turns - before).abs().max() < CONVERGED:
+                break
         return placing @ turns, turns
 
     def cross_validated_r2(
