@@ -31,7 +31,7 @@ class MetricMap(nn.Module):
 
         x(o) = Σ_p w_p (x_p + B_p (o − c_p)) = b(o)·β,        e^{iθ} = e^{iθ̂} f(o),  f(o) = Σ_p w_p f_p.
 
-    Where a body looks it goes: for views t and t + 3 with no turn between them, v = b(o_{t+3}) − b(o_t) and u
+    Where a body looks it goes: for views t and t + 4 with no turn between them, v = b(o_{t+4}) − b(o_t) and u
     the mean of e^{iθ̂} on the way, v·β should be u f. With the sums S = Σ v vᵀ and D = Σ w ū vᵀ least squares
     gives β = S⁻¹ Dᴴ f, and the displacements that agree best with the compass give f, in turn the phases of
 
@@ -68,7 +68,7 @@ class MetricMap(nn.Module):
         cells: int,
         odorants: int,
         *,
-        lag: int = 3,
+        lag: int = 4,
         straight: float = 0.25,
         ridge: float = 1e-3,
         least_r2: float = 0.8,
