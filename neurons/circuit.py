@@ -1,14 +1,12 @@
 """The circuit: all layers, and the way of a view through them."""
 
-import math
-
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
 
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.metric_map import MetricMap
-from neurons.atlas.synchronisation import Compass
+from neurons.guard import Agreement, Guard
 from neurons.layers.afferents import Afferents
 from neurons.layers.charts import Charts
 from neurons.layers.heading_cells import HeadDirectionCells
@@ -33,10 +31,8 @@ class Circuit(nn.Module):
         Draws the initial weights, on the processor; `to` takes the layers to another device, to learn there.
     smell
         κ, how much smell counts beside sight where charts compete (`neurons.layers.charts.Charts`).
-    least_eigenvalue
-        Least agreement of the phases in an atlas to be trusted; at .998 headings have been seen 12° off.
-    least_sign_agreement
-        Least agreement of the heading axes on a direction of turning: one overlap in 400 may be reversed.
+    guard
+        Bounds of what is trusted; the usual ones unless told.
     """
 
     def __init__(
@@ -51,13 +47,11 @@ class Circuit(nn.Module):
         heading_cells: int,
         generator: torch.Generator,
         smell: float = 0.5,
-        least_eigenvalue: float = 0.999,
-        least_sign_agreement: float = 0.995,
+        guard: Guard | None = None,
     ) -> None:
         super().__init__()
         self.most_charts = most_charts
-        self.least_eigenvalue = least_eigenvalue
-        self.least_sign_agreement = least_sign_agreement
+        self.guard = guard or Guard()
         self.code = Sanger(features, components, generator=generator)
         self.charts = Charts(charts, components, odorants, generator=generator, smell=smell)
         self.olfaction = Olfaction(charts, odorants)
@@ -67,33 +61,30 @@ class Circuit(nn.Module):
         self.metric_map = MetricMap(place_cells, odorants)
         self.agreement: Tensor = nn.Buffer(torch.full((2,), torch.nan))
         self.connected: Tensor = nn.Buffer(torch.zeros((), dtype=torch.bool))
+        self.ambiguity: Tensor = nn.Buffer(torch.tensor(torch.nan))
 
-    def recall(self, strips: Float[Tensor, "views features"]) -> Recalled:
-        """Tell heading and smell from sight."""
+    def recall(
+        self,
+        strips: Float[Tensor, "views features"],
+        log_odours: Float[Tensor, "views odorants"] | None = None,
+    ) -> Recalled:
+        """Tell heading and smell from sight; from both senses where the smell is given, too."""
         codes = self.code(strips)
-        recalled: Recalled = self.readout(self.charts, codes, self.readout.excite(self.charts, codes))
+        excited = self.readout.excite(self.charts, codes, log_odours)
+        recalled: Recalled = self.readout(self.charts, codes, excited)
         return recalled
 
     def atlas_diagnosis(self) -> str:
         """Say in what the charts do not agree, or nothing when they do."""
         signs, phases = self.agreement.tolist()
-        return self._doubt(signs, phases)
+        return self.guard.atlas(signs, phases)
 
-    def agrees(self, compass: Compass) -> bool:
-        """Whether a compass would pass the guard."""
-        return not self._doubt(compass.sign_agreement, compass.eigenvalue)
-
-    def _doubt(self, signs: float, phases: float) -> str:
-        if not math.isfinite(phases):
-            return "no loop of its charts closes after a turn; use more charts or more views"
-        if phases < self.least_eigenvalue:
-            return (
-                f"the phases of its charts agree only to {phases:.4f}, below {self.least_eigenvalue}: "
-                "the atlas is too coarse; use more charts"
-            )
-        if signs < self.least_sign_agreement:
-            return f"its heading axes agree only to {signs:.3f}; use more charts or more odour sources"
-        return ""
+    @property
+    def told(self) -> Agreement:
+        """What the guard judges by."""
+        signs, phases = self.agreement.tolist()
+        foretold = float(self.metric_map.cross_validated_r2.min())
+        return Agreement(signs, phases, bool(self.connected), foretold, float(self.ambiguity))
 
     def add_charts(self) -> None:
         """Double the charts where they lie farthest apart; what stands on them is as before any view."""
@@ -109,4 +100,5 @@ class Circuit(nn.Module):
         self.heading.afferents = Afferents(count, len(self.heading.preferred))
         self.agreement.fill_(torch.nan)
         self.connected.zero_()
+        self.ambiguity.fill_(torch.nan)
         self.to(self.agreement.device)  # where the layers are that these replace

@@ -104,23 +104,24 @@ class Network(Circuit):
             for name in stage.recent:
                 self.get_buffer(name).fill_(torch.nan)
 
-    def diagnosis(self) -> str:
-        """Say why this map cannot be trusted, or nothing when it can."""
-        if self.stage != self.stages[-1]:
-            return f"it is still in its {self.stage.name!r} stage; show it more views"
-        reason = self.atlas_diagnosis()
-        if not reason and bool(self.connected) and self.metric_map.diagnosis():
-            return (
-                "its charts agree only with a connection that was learnt, and no metric map confirms it: "
-                f"{self.metric_map.diagnosis()}"
-            )
-        return reason
+    def heading_diagnosis(self) -> str:
+        """Say why headings cannot be trusted, or nothing when they can."""
+        return self.unfinished or self.guard.heading(self.told)
+
+    def place_diagnosis(self) -> str:
+        """Say why places cannot be trusted, or nothing when they can."""
+        return self.unfinished or self.guard.place(self.told)
 
     def metric_diagnosis(self) -> str:
         """Say why there is no metric map, or nothing when there is one."""
-        if self.stage != self.stages[-1]:
-            return f"this map is still in its {self.stage.name!r} stage; show it more views"
-        return self.metric_map.diagnosis()
+        return self.unfinished or self.metric_map.diagnosis()
+
+    @property
+    def unfinished(self) -> str:
+        """In which stage it still learns; empty in the last."""
+        if self.stage == self.stages[-1]:
+            return ""
+        return f"it is still in its {self.stage.name!r} stage; show it more views"
 
     def _index(self, name: str) -> int:
         return [stage.name for stage in self.stages].index(name)

@@ -10,6 +10,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
+from neurons.atlas.ambiguity import ambiguous_share
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.connection import LearntConnection
 from neurons.atlas.heading_axis import heading_axes
@@ -217,11 +218,12 @@ class OlfactionStage(CodedStage):
         compass = None
         with suppress(NeuronsError):  # no ring closes: `agreement` stays NaN, which `diagnosis` tells
             compass = synchronise(circuit.charts.centres, axes, atlas)
-        if self.connection and not (compass and circuit.agrees(compass)):
-            gradients = circuit.charts.tangents.mT @ jacobians
-            further = self.connection.compasses(circuit.charts.centres, axes, gradients, intercepts, atlas)
-            compass = next(filter(circuit.agrees, further), compass)
-        if compass:
+            if self.connection and circuit.guard.atlas(compass.sign_agreement, compass.eigenvalue):
+                gradients = circuit.charts.tangents.mT @ jacobians
+                refined = self.connection.refine(
+                    compass, circuit.charts.centres, gradients, intercepts, atlas
+                )
+                compass = max(compass, refined, key=lambda either: either.eigenvalue)
             circuit.agreement = circuit.agreement.new_tensor([compass.sign_agreement, compass.eigenvalue])
             circuit.connected.fill_(compass.walking is not None)
         circuit.readout.solve(atlas, compass, intercepts, jacobians)
@@ -281,7 +283,10 @@ class CorrectedMetricMapStage(MetricMapStage):
         """Solve for positions and what is left of the offsets; let each place cell keep to one place."""
         circuit.metric_map.solve()
         edges = Atlas.of(circuit.charts.points).edges
-        circuit.place.disambiguate(circuit.readout.intercepts, circuit.readout.phases, edges)
+        smells, phases = circuit.readout.intercepts, circuit.readout.phases
+        circuit.place.disambiguate(smells, phases, edges)
+        headings = phases + circuit.metric_map(circuit.place, smells).offset
+        circuit.ambiguity.fill_(ambiguous_share(smells, headings, edges))
 
 
 @dataclass(frozen=True)

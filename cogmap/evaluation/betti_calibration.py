@@ -13,8 +13,9 @@ import pandas as pd
 from jaxtyping import Float
 from tqdm import tqdm
 
-from cogmap.evaluation.homology_of_map import seen_and_smelt, unless_aliased
+from cogmap.evaluation.homology_of_map import seen_and_smelt
 from cogmap.graph import nearest_points
+from cogmap.shape.aliasing import unless_aliased
 from cogmap.shape.homology import Betti, betti
 
 Points = Float[np.ndarray, "points coordinates"]

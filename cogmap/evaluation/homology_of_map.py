@@ -1,12 +1,11 @@
 """Homology of everything that a map knows: its views, its fusion, its two populations."""
 
-from dataclasses import replace
-
 import numpy as np
 from jaxtyping import Float
 
 from cogmap.graph import nearest_points
 from cogmap.map.activity import Activity
+from cogmap.shape.aliasing import unless_aliased
 from cogmap.shape.homology import Betti, betti
 
 SMELL = 0.2
@@ -72,26 +71,3 @@ def seen_and_smelt(
     # The deviation of a normal variable over the median of its size; the mean of the others has noise too.
     noise = 1.4826 * np.median(abs(residual)) / np.sqrt(1 + 1 / NEAREST)
     return np.hstack([codes, SMELL * np.median(nearest.distances[:, -1]) / noise * smells])
-
-
-def unless_aliased(alone: Betti, joint: Betti, *, turning: bool = False) -> Betti:
-    """Leave unresolved what sight and smell together do not tell too, or are not sure of.
-
-    Parameters
-    ----------
-    alone
-        Of a cloud that one sense has made.
-    joint
-        Of what both tell.
-    turning
-        Whether `joint` has a circle of headings as well, by which the other is to be multiplied.
-    """
-    numbers = np.convolve(alone.numbers, (1, 1))[: len(alone.numbers)] if turning else alone.numbers
-    aliased = f"aliased: sight alone says {list(alone.numbers)}, with smell {list(joint.numbers)}"
-    reasons = tuple(
-        aliased if number != wanted else reason or (other and f"with smell {other}")
-        for number, wanted, reason, other in zip(
-            numbers, joint.numbers, alone.reasons, joint.reasons, strict=True
-        )
-    )
-    return replace(alone, reasons=reasons)

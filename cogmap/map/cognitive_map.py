@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import KW_ONLY, dataclass, fields
@@ -22,10 +22,14 @@ from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.inputs import check_views, checked_count, log_odours
 from cogmap.map.activity import Activity
 from cogmap.map.device import checked_device
+from cogmap.map.diagnosis import Diagnosis, Verdict, topology_verdict
 from cogmap.map.storage import read_state, write_state
+from cogmap.shape.aliasing import unless_aliased
+from cogmap.shape.homology import Betti, betti
 from cogmap.threads import in_order, one_thread
 from neurons.angles import mean_angle
 from neurons.errors import NeuronsError
+from neurons.layers.readout import Recalled
 from neurons.layers.retina import Retina
 from neurons.merging import forked, merge
 from neurons.network import Network
@@ -74,7 +78,7 @@ class CognitiveMap:
     Attributes
     ----------
     trusted_
-        Whether the charts agree well enough for headings to be right.
+        Whether heading and place are to be trusted; `diagnosis` says more.
     reason_
         Why not, in words; empty when trusted.
     metric_reason_
@@ -225,34 +229,33 @@ class CognitiveMap:
         return self
 
     def perceive(self, views: Any = None, *, odours: ArrayLike | None = None) -> Activity:
-        """Let the map look at views, or smell odours in the dark, which tells place only.
+        """Let the map look at views, smell odours in the dark, which tells place only, or both at once.
+
+        With both, smell picks among the charts that look alike; what they recall is told from sight as ever.
 
         Raises
         ------
         CogmapError
-            When the map is not grown yet, or when given both or neither.
+            When the map is not grown yet, when given neither, or more of one than of the other.
         """
         network = self._grown
-        if (views is None) == (odours is None):
-            raise CogmapError("give either views, or odours for a look in the dark; not both or neither")
+        if views is None:
+            if odours is None:
+                raise CogmapError("give views, odours for a look in the dark, or both")
+            return self._sniff(log_odours(odours, odorants=self.odorants_))
+        check_views(views, self.view_shape_)
+        logs = None
+        if odours is not None:
+            logs = self._here(log_odours(odours, views=views.shape[0], odorants=self.odorants_))
         with one_thread(self._device):
-            if odours is not None:
-                smells = self._here(log_odours(odours, odorants=self.odorants_))
-                # float32, as everything that a map says of views
-                blind = np.full((len(smells), 1 + self.heading_cells), np.nan, np.float32)
-                return Activity(
-                    place=network.place.tuning(smells).cpu().numpy(),
-                    heading=blind[:, 1:],
-                    phase=blind[:, 0],
-                    odour=smells.cpu().numpy(),
-                    position=network.metric_map(network.place, smells).position.cpu().numpy(),
-                )
-            check_views(views, self.view_shape_)
             if not self.trusted_:
                 warnings.warn(
                     f"this map is not to be trusted: {self.reason_}", UntrustedMapWarning, stacklevel=2
                 )
-            parts = [self._look(strip) for _, strip in self._strips(views)]
+            parts = [
+                self._look(network.recall(strip, None if logs is None else logs[rows]))
+                for rows, strip in self._strips(views)
+            ]
         return Activity(*(torch.cat(part).cpu().numpy() for part in zip(*parts, strict=True)))
 
     def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
@@ -262,15 +265,35 @@ class CognitiveMap:
         with one_thread(self._device):
             return torch.cat([network.code(strip) for _, strip in self._strips(views)]).cpu().numpy()
 
+    def diagnosis(self, homology: Mapping[str, Betti] | None = None) -> Diagnosis:
+        """Say of heading, place, metric map and topology whether each is to be trusted, and why not.
+
+        Parameters
+        ----------
+        homology
+            Betti numbers that topology is judged by, as of `cogmap.evaluation.homologies`; without, those of
+            the charts are measured, as seen and as seen and smelt, which takes some seconds.
+        """
+        network = self._grown
+        topology = Verdict(network.unfinished)
+        if topology.trusted:
+            topology = topology_verdict(self._homology_of_charts() if homology is None else homology)
+        return Diagnosis(
+            heading=Verdict(network.heading_diagnosis()),
+            place=Verdict(network.place_diagnosis()),
+            metric_map=Verdict(network.metric_diagnosis()),
+            topology=topology,
+        )
+
     @property
     def trusted_(self) -> bool:
-        """Whether the charts agree well enough for headings to be right."""
+        """Whether heading and place are to be trusted (`diagnosis`)."""
         return not self.reason_
 
     @property
     def reason_(self) -> str:
         """Why this map is not trusted; empty when it is."""
-        return self._grown.diagnosis()
+        return self._grown.heading_diagnosis() or self._grown.place_diagnosis()
 
     @property
     def metric_reason_(self) -> str:
@@ -327,6 +350,11 @@ class CognitiveMap:
             raise CogmapError(f"{path} does not hold a whole map: {error}") from None
         return loaded
 
+    def _homology_of_charts(self) -> dict[str, Betti]:
+        charts = self._grown.charts
+        sight, both = (betti(cloud.cpu().numpy()) for cloud in (charts.centres, charts.points))
+        return {"seen": unless_aliased(sight, both), "seen_and_smelt": both}
+
     def _begin(
         self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, charts: int | None = None
     ) -> None:
@@ -376,15 +404,29 @@ class CognitiveMap:
         # read by one thread alone: whatever lazy views are made of need not bear several
         return in_order(lambda batch: (batch[0], self._retina(batch[1].to(self._device))), batches())
 
-    def _look(self, strips: Float[Tensor, "views features"]) -> tuple[Tensor, ...]:
+    def _look(self, recalled: Recalled) -> tuple[Tensor, ...]:
         """Rates of both populations, heading, recalled odour and position."""
         network = self._network
-        recalled = network.recall(strips)
         position, offset = network.metric_map(network.place, recalled.odour)
         angle = (recalled.heading + offset)[:, None]
         phase = mean_angle(angle, torch.ones_like(angle))
         place, heading = (cells.afferents(recalled.excited) for cells in (network.place, network.heading))
         return place, heading, phase, recalled.odour, position
+
+    def _sniff(self, log_odours: Float[np.ndarray, "views odorants"]) -> Activity:
+        """Place cells and position in the dark, where heading is not known."""
+        network = self._network
+        # float32, as everything that a map says of views
+        blind = np.full((len(log_odours), 1 + self.heading_cells), np.nan, np.float32)
+        with one_thread(self._device):
+            smells = self._here(log_odours)
+            return Activity(
+                place=network.place.tuning(smells).cpu().numpy(),
+                heading=blind[:, 1:],
+                phase=blind[:, 0],
+                odour=smells.cpu().numpy(),
+                position=network.metric_map(network.place, smells).position.cpu().numpy(),
+            )
 
 
 @contextmanager

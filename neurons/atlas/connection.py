@@ -1,18 +1,15 @@
 """The connection: what walking turns a compass by where little is seen, learnt until loops close."""
 
-from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
 from jaxtyping import Float
-from scipy.cluster.vq import kmeans2
+from scipy.special import softmax
 from torch import Tensor
 
 from neurons.atlas.atlas import Atlas
-from neurons.atlas.synchronisation import Compass, Overlaps, synchronise
-from neurons.errors import NeuronsError
+from neurons.atlas.synchronisation import Compass, Overlaps
 
 
 @dataclass(frozen=True)
@@ -47,25 +44,22 @@ class LearntConnection:
     rounds: int = 12
     ridge: float = 1e-3
 
-    def compasses(
+    def refine(
         self,
+        plain: Compass,
         centres: Float[Tensor, "charts components"],
-        axes: Float[Tensor, "charts components"],
         gradients: Float[Tensor, "charts components odorants"],
         smells: Float[Tensor, "charts odorants"],
         atlas: Atlas,
-    ) -> Iterator[Compass]:
-        """Give compasses with a connection, the least far-fetched first; none where no loop closes.
+    ) -> Compass:
+        """Give the compass that a connection makes of a plain one.
 
-        The scale of the first is found on all overlaps alike; that of the second with overlaps weighing
-        1 / (1 + (|a_k − a_j| / median)²), as those that lead far are the likeliest to be wrong. Agreement is
-        told of all overlaps alike: weights that forgive what does not fit would make any compass agree.
+        Its agreement is told of all overlaps alike: weights that forgive what does not fit would make any
+        compass agree.
         """
         edges = atlas.edges.cpu().numpy()
         k, j = edges.T
         odour = smells.double().cpu().numpy()
-        apart = np.linalg.norm(odour[k] - odour[j], axis=1)
-        near = 1 / (1 + (apart / np.median(apart)) ** 2)
         centre, gradient = centres.double().cpu().numpy(), gradients.double().cpu().numpy()
         share = self._shares(odour)
         across = centre[j] - centre[k]
@@ -74,30 +68,25 @@ class LearntConnection:
             np.einsum("ec,eco->eo", across, gradient[end])[:, None] * share[end][..., None] for end in (k, j)
         )
         features = 0.5 * sum(ends).reshape(len(edges), -1)
-        for strength in (np.ones(len(edges)), near):
-            with suppress(NeuronsError):
-                plain = synchronise(centres, axes, atlas, strength=strength)
-                b, phases, eigenvalue = self._fit(
-                    plain, across, features, Overlaps(edges, len(odour), strength)
-                )
-                walking = np.einsum("kco,ko->kc", gradient, share @ b.reshape(self.places, -1))
-                yield replace(
-                    plain,
-                    phases=torch.from_numpy(phases).to(axes),
-                    eigenvalue=eigenvalue,
-                    walking=torch.from_numpy(walking).to(axes),
-                )
+        b, phases, eigenvalue = self._fit(plain, across, features, Overlaps(edges, len(odour)))
+        walking = np.einsum("kco,ko->kc", gradient, share @ b.reshape(self.places, -1))
+        return replace(
+            plain,
+            phases=torch.from_numpy(phases).to(plain.axes),
+            eigenvalue=eigenvalue,
+            walking=torch.from_numpy(walking).to(plain.axes),
+        )
 
     def _shares(self, odour: Float[np.ndarray, "charts odorants"]) -> Float[np.ndarray, "charts places"]:
         """Share every chart out among the soft places."""
-        first = odour[np.linspace(0, len(odour) - 1, self.places).astype(int)]
-        # a start of its own, not a drawn one: the same places every time
-        middles, _ = kmeans2(odour, first, minit="matrix", iter=10)
+        # charts are born in random order: so many of them lie anywhere, the same ones every time
+        middles = odour[np.linspace(0, len(odour) - 1, self.places).astype(int)]
         squared = np.square(odour[:, None] - middles).sum(axis=2)
         between = np.square(middles[:, None] - middles).sum(axis=2)
         exponent = -0.5 * squared / np.sort(between, axis=1)[:, 1].mean()
-        share: np.ndarray = np.exp(exponent - exponent.max(axis=1, keepdims=True))
-        return share / share.sum(axis=1, keepdims=True)
+        # softmax takes the largest exponent away: far from all places shares would else be 0 / 0
+        share: np.ndarray = softmax(exponent, axis=1)
+        return share
 
     def _fit(
         self,
@@ -113,12 +102,12 @@ class LearntConnection:
         b = np.zeros(features.shape[1])
         for _ in range(self.rounds):
             left = np.angle(np.exp(1j * (phases[j] - phases[k] - turning - features @ b)))
-            strength = overlaps.strength / (1 + (left / (3 * np.median(np.abs(left)))) ** 2)
+            strength = 1 / (1 + (left / (3 * np.median(np.abs(left)))) ** 2)
             weighted = features * strength[:, None]
             gram = weighted.T @ features
             gram += self.ridge * gram.diagonal().mean() * np.eye(len(gram))
             b = np.linalg.solve(gram, weighted.T @ (left + features @ b))
             step = np.exp(-1j * (turning + features @ b))
-            phases = np.angle(replace(overlaps, strength=strength).top(step)[1])
-        eigenvalue, vector = replace(overlaps, strength=np.ones(len(k))).top(step)
+            phases = np.angle(overlaps.top(step, strength)[1])
+        eigenvalue, vector = overlaps.top(step)
         return b, np.angle(vector), eigenvalue

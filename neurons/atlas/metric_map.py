@@ -9,7 +9,6 @@ from torch import Tensor, nn
 from neurons.angles import wrap_angle
 from neurons.layers.place_cells import PlaceCells
 
-
 MOST_ITERATIONS, CONVERGED = 20_000, 1e-9
 """Of the power iteration, and the change of a unit number that ends it."""
 

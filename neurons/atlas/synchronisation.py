@@ -1,7 +1,7 @@
 """Synchronisation of signs, then phases, over the atlas: lateral weights turn local axes into one compass."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -56,20 +56,19 @@ class Overlaps:
 
     edges: Int[np.ndarray, "edges 2"]
     count: int
-    strength: Float[np.ndarray, "edges"]
-    """How much each overlap counts."""
 
-    @property
-    def degree(self) -> Float[np.ndarray, "charts"]:
-        """Strengths of the overlaps of each chart together."""
-        return np.bincount(self.edges.T.ravel(), np.tile(self.strength, 2), self.count)
+    def top(
+        self, weight: Complex[np.ndarray, "edges"], strength: Float[np.ndarray, "edges"] | None = None
+    ) -> tuple[float, Complex[np.ndarray, "charts"]]:
+        """Largest eigenvalue and its vector, by inverse iteration just above 1, the bound of the spectrum.
 
-    def top(self, weight: Complex[np.ndarray, "edges"]) -> tuple[float, Complex[np.ndarray, "charts"]]:
-        """Largest eigenvalue and its vector, by inverse iteration just above 1, the bound of the spectrum."""
+        `strength` says how much each overlap counts, all the same unless told.
+        """
         k, j = self.edges.T
-        degree = self.degree
+        counts = np.ones(len(k)) if strength is None else strength
+        degree = np.bincount(self.edges.T.ravel(), np.tile(counts, 2), self.count)
         # by degrees: the spectrum is bounded by 1, and charts with many overlaps do not rule
-        entry = self.strength * weight / np.sqrt(degree[k] * degree[j])
+        entry = counts * weight / np.sqrt(degree[k] * degree[j])
         index = (np.r_[k, j], np.r_[j, k])
         matrix = csc_array((np.r_[entry, entry.conj()], index), shape=(self.count, self.count))
         # the eigenvector where no weight has a phase: a start that needs no random numbers
@@ -84,7 +83,6 @@ def synchronise(
     axes: Float[Tensor, "charts components"],
     atlas: Atlas,
     *,
-    strength: Float[np.ndarray, "edges"] | None = None,
     cells: int = 250,
     scales: tuple[float, float, int] = (0.03, 1.5, 80),
 ) -> Compass:
@@ -101,8 +99,6 @@ def synchronise(
     ----------
     centres, axes, atlas
         C_k, n_k up to sign, and the overlaps.
-    strength
-        How much each overlap counts where axes and scale are sought; all alike unless told.
     cells
         Groups of charts, turning together, on which the scale is sought: dense eigenvalues of a few hundred
         are fast.
@@ -119,8 +115,7 @@ def synchronise(
     ----------
     Singer (2011), Angular synchronization by eigenvectors and semidefinite programming. ACHA 30.
     """
-    edges = atlas.edges.cpu().numpy()
-    overlaps = Overlaps(edges, len(centres), np.ones(len(edges)) if strength is None else strength)
+    overlaps = Overlaps(atlas.edges.cpu().numpy(), len(centres))
     k, j = overlaps.edges.T
     graph = csc_array((np.ones(len(k)), (k, j)), shape=(len(centres),) * 2)
     pieces, _ = connected_components(graph, directed=False)
@@ -135,13 +130,11 @@ def synchronise(
     n = n * sign[:, None]
     signed = sign[k] * sign[j] * agreement
     omega = 0.5 * np.einsum("ec,ec->e", c[j] - c[k], n[k] + n[j])
-    scale = _close_ring(overlaps, omega, np.geomspace(*scales), cells)
-    # of all overlaps alike, whatever they counted for: what does not agree must show
-    eigenvalue, vector = replace(overlaps, strength=np.ones(len(edges))).top(np.exp(-1j * scale * omega))
+    scale, eigenvalue, phases = _close_ring(overlaps, omega, np.geomspace(*scales), cells)
     return Compass(
         axes=torch.from_numpy(n).to(axes),
         scale=scale,
-        phases=torch.from_numpy(np.angle(vector)).to(axes),
+        phases=torch.from_numpy(phases).to(axes),
         sign_agreement=float(signed.sum() / np.abs(agreement).sum()),
         eigenvalue=eigenvalue,
     )
@@ -149,8 +142,8 @@ def synchronise(
 
 def _close_ring(
     overlaps: Overlaps, omega: Float[np.ndarray, "edges"], scales: Float[np.ndarray, "scales"], cells: int
-) -> float:
-    """Find the scale at which loops close after one turn."""
+) -> tuple[float, float, Float[np.ndarray, "charts"]]:
+    """Find the scale at which loops close after one turn; it, the eigenvalue there, and the phases."""
     # free of the unit of code: 1 is one radian across a typical overlap
     tried = scales / np.sqrt(np.mean(omega**2))
     values: list[float] = []
@@ -164,7 +157,9 @@ def _close_ring(
     # in log c, in which the grid is even: three points, one parabola, no residual
     near = np.log(tried[len(values) - 3 : len(values)])
     bend, slope, _ = np.polyfit(near, values[-3:], 2)
-    return float(np.exp(-slope / (2 * bend)))
+    scale = float(np.exp(-slope / (2 * bend)))
+    eigenvalue, vector = overlaps.top(np.exp(-1j * scale * omega))
+    return scale, eigenvalue, np.angle(vector)
 
 
 def _coarse_eigenvalues(
@@ -193,10 +188,10 @@ def _coarse_eigenvalues(
     across = potential[k] + omega - potential[j]
     size = len(roots)
     pair = cell[k] * size + cell[j]
-    degree = np.bincount(cell, overlaps.degree, size)
+    degree = np.bincount(cell[overlaps.edges.ravel()], minlength=size)
     norm = 1 / np.sqrt(np.outer(degree, degree))
     for scale in scales:
-        turn = overlaps.strength * np.exp(-1j * scale * across)
+        turn = np.exp(-1j * scale * across)
         # bincount adds real numbers only, in the order of edges: the same bits every time
         entry = np.bincount(pair, turn.real, size**2) + 1j * np.bincount(pair, turn.imag, size**2)
         half = entry.reshape(size, size) * norm

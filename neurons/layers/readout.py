@@ -94,9 +94,14 @@ class Readout(nn.Module):
             # the scale goes into the axes once, not into the angle of every view
             self.phases, self.turning = compass.phases, compass.turning
 
-    def excite(self, charts: Charts, codes: Float[Tensor, "views components"]) -> ChartActivity:
-        """Activity of the nearest charts."""
-        nearest = charts.excite(codes, self.winners)
+    def excite(
+        self,
+        charts: Charts,
+        codes: Float[Tensor, "views components"],
+        log_odours: Float[Tensor, "views odorants"] | None = None,
+    ) -> ChartActivity:
+        """Activity of the nearest charts, as seen or as seen and smelt."""
+        nearest = charts.excite(codes, self.winners, log_odours)
         width = self.breadth * self.spacing[nearest.chart]
         # softmax takes the largest exponent away: a view far from all charts would else have weights 0 / 0
         weight = torch.softmax(-0.5 * nearest.squared_distance / width**2, dim=1)

@@ -1,0 +1,56 @@
+"""Diagnosis of a map: four verdicts, each trusted or not and why."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+
+from cogmap.shape.homology import Betti
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether one kind of answer can be trusted."""
+
+    reason: str = ""
+    """Why not, in a sentence; empty when it can."""
+
+    @property
+    def trusted(self) -> bool:
+        """Whether nothing speaks against it."""
+        return not self.reason
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Verdicts on what a map says.
+
+    Attributes
+    ----------
+    heading
+        Whether `Activity.phase` and head-direction cells tell where a view heads.
+    place
+        Whether `Activity.odour` and place cells tell where it was seen.
+    metric_map
+        Whether `Activity.position` lays places out.
+    topology
+        Whether the Betti numbers of the map are those of the room.
+    """
+
+    heading: Verdict
+    place: Verdict
+    metric_map: Verdict
+    topology: Verdict
+
+    def __str__(self) -> str:
+        verdicts = {field.name.replace("_", " "): getattr(self, field.name) for field in fields(self)}
+        return "\n".join(f"{name}: {told.reason or 'trusted'}" for name, told in verdicts.items())
+
+
+def topology_verdict(homology: Mapping[str, Betti]) -> Verdict:
+    """Trust the Betti numbers of clouds when all of them are resolved; else say which is not, and why."""
+    doubts = (
+        f"H{dimension} of {name.replace('_', ' ')} is unresolved: {reason}"
+        for name, found in homology.items()
+        for dimension, reason in enumerate(found.reasons)
+        if reason
+    )
+    return Verdict("; ".join(doubts))

@@ -1,0 +1,104 @@
+"""The guard of a map: which of its answers can be trusted, and in words why the others cannot."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+
+class Agreement(NamedTuple):
+    """How well agrees what a map has learnt; NaN where it has not been tried."""
+
+    signs: float
+    """Of the heading axes on a direction of turning (`neurons.atlas.synchronisation.Compass`)."""
+    phases: float
+    """Eigenvalue of the synchronisation of headings."""
+    connected: bool
+    """Whether the phases agree only by what walking turns (`neurons.atlas.connection`)."""
+    foretold: float
+    """Share of one half of the walk that the metric map of the other foretells, the lesser of both."""
+    ambiguous: float
+    """Share of charts whose smell and heading are found elsewhere too (`neurons.atlas.ambiguity`)."""
+
+
+@dataclass(frozen=True)
+class Guard:
+    """Bounds of what is trusted, found on maps of rooms that were scored with true poses.
+
+    Agreement of charts alone is no proof: a room that is the same when turned by half gives a map of half
+    of it in which all charts agree. Its smells and headings then fit two places, and walking contradicts it.
+
+    Attributes
+    ----------
+    least_eigenvalue
+        Least agreement of the phases in an atlas to be trusted; at .998 headings have been seen 12° off.
+    least_sign_agreement
+        Least agreement of the heading axes on a direction of turning: one overlap in 400 may be reversed.
+    confirmed_eigenvalue, confirmed_sign_agreement
+        What will do where walking confirms the headings: 2 to 5° off from .998 up; at .994, 90° at one view
+        in twenty.
+    confirming_r2
+        Share that a half of the walk foretells of the other and that confirms: .9 to .98 in maps that are
+        right. Below 0 it contradicts them: −.3 to −3 in maps of half a room.
+    most_ambiguous_heading, most_ambiguous_place
+        Largest share of charts that fit elsewhere too: .35 to .49 in maps of half a room, .05 to .19 where
+        odours come from one line and headings are right but places are not, at most .01 in maps that are
+        right in both.
+    """
+
+    least_eigenvalue: float = 0.999
+    least_sign_agreement: float = 0.995
+    confirmed_eigenvalue: float = 0.9975
+    confirmed_sign_agreement: float = 0.97
+    confirming_r2: float = 0.9
+    most_ambiguous_heading: float = 0.25
+    most_ambiguous_place: float = 0.025
+
+    def atlas(self, signs: float, phases: float) -> str:
+        """Say in what the charts do not agree, or nothing when they do."""
+        if not math.isfinite(phases):
+            return "no loop of its charts closes after a turn; use more charts, more views or a landmark more"
+        if phases < self.least_eigenvalue:
+            return (
+                f"the phases of its charts agree only to {phases:.4f}, below {self.least_eigenvalue}: the "
+                "atlas is too coarse, or places look alike; use more charts, or a landmark more"
+            )
+        if signs < self.least_sign_agreement:
+            return f"its heading axes agree only to {signs:.3f}; use more charts or more odour sources"
+        return ""
+
+    def heading(self, told: Agreement) -> str:
+        """Say why headings are not to be trusted, or nothing when they are."""
+        if told.foretold < 0:
+            return (
+                "what follows a view lies anywhere but ahead of it: poses that look and smell alike are one "
+                "to it; set a landmark or an odour where they differ"
+            )
+        if told.ambiguous > self.most_ambiguous_heading:
+            return f"poses that look and smell alike are one to it: {self._elsewhere(told.ambiguous)}"
+        doubt = self.atlas(told.signs, told.phases)
+        confirmed = told.foretold >= self.confirming_r2
+        nearly = told.phases >= self.confirmed_eigenvalue and told.signs >= self.confirmed_sign_agreement
+        if doubt and nearly and confirmed:
+            return ""
+        if not doubt and told.connected and not confirmed:
+            return (
+                "its charts agree only by a connection that was learnt, which walking does not confirm: one "
+                f"half of the walk foretells {told.foretold:.2f} of the other, less than "
+                f"{self.confirming_r2}; show it longer walks, in order, or a landmark more"
+            )
+        return doubt
+
+    def place(self, told: Agreement) -> str:
+        """Say why places are not to be trusted, or nothing when they are."""
+        if reason := self.heading(told):
+            return f"without headings nothing tells whether a smell means one place: {reason}"
+        if told.ambiguous > self.most_ambiguous_place:
+            return f"a smell means several places: {self._elsewhere(told.ambiguous)}"
+        return ""
+
+    @staticmethod
+    def _elsewhere(share: float) -> str:
+        return (
+            f"{share:.0%} of its charts smell and head like others far away; use more odour sources, not all "
+            "on one line, or a landmark more"
+        )
