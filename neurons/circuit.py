@@ -61,7 +61,7 @@ class Circuit(nn.Module):
         self.metric_map = MetricMap(place_cells, odorants)
         self.agreement: Tensor = nn.Buffer(torch.full((2,), torch.nan))
         self.connected: Tensor = nn.Buffer(torch.zeros((), dtype=torch.bool))
-        self.ambiguity: Tensor = nn.Buffer(torch.tensor(torch.nan))
+        self.ambiguity: Tensor = nn.Buffer(torch.full((2,), torch.nan))
 
     def recall(
         self,
@@ -84,7 +84,8 @@ class Circuit(nn.Module):
         """What the guard judges by."""
         signs, phases = self.agreement.tolist()
         foretold = float(self.metric_map.cross_validated_r2.min())
-        return Agreement(signs, phases, bool(self.connected), foretold, float(self.ambiguity))
+        ambiguous, aliased = self.ambiguity.tolist()
+        return Agreement(signs, phases, bool(self.connected), foretold, ambiguous, aliased)
 
     def add_charts(self) -> None:
         """Double the charts where they lie farthest apart; what stands on them is as before any view."""

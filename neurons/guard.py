@@ -17,7 +17,9 @@ class Agreement(NamedTuple):
     foretold: float
     """Share of one half of the walk that the metric map of the other foretells, the lesser of both."""
     ambiguous: float
-    """Share of charts whose smell and heading are found elsewhere too (`neurons.atlas.ambiguity`)."""
+    """Share of the charts most alike in smell and heading that are far apart (`neurons.atlas.ambiguity`)."""
+    aliased: float
+    """The same of the charts most alike to sight."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,9 @@ class Guard:
         Largest share of charts that fit elsewhere too: .35 to .49 in maps of half a room, .05 to .19 where
         odours come from one line and headings are right but places are not, at most .01 in maps that are
         right in both.
+    most_aliased
+        Largest share of charts that look like others far away: .03 to .35 in maps of which one view in twenty
+        or more is told 90° off or from the other end of the room, at most .004 in maps that are right.
     """
 
     least_eigenvalue: float = 0.999
@@ -52,6 +57,7 @@ class Guard:
     confirming_r2: float = 0.9
     most_ambiguous_heading: float = 0.25
     most_ambiguous_place: float = 0.025
+    most_aliased: float = 0.012
 
     def atlas(self, signs: float, phases: float) -> str:
         """Say in what the charts do not agree, or nothing when they do."""
@@ -74,7 +80,15 @@ class Guard:
                 "to it; set a landmark or an odour where they differ"
             )
         if told.ambiguous > self.most_ambiguous_heading:
-            return f"poses that look and smell alike are one to it: {self._elsewhere(told.ambiguous)}"
+            return (
+                f"{told.ambiguous:.0%} of its charts smell and head like others far away: poses that look "
+                "and smell alike are one to it; set a landmark or an odour where they differ"
+            )
+        if told.aliased > self.most_aliased:
+            return (
+                f"{told.aliased:.1%} of its charts look like others far away, which sight alone does not "
+                "tell apart; set a landmark where they differ, or perceive with odours too"
+            )
         doubt = self.atlas(told.signs, told.phases)
         confirmed = told.foretold >= self.confirming_r2
         nearly = told.phases >= self.confirmed_eigenvalue and told.signs >= self.confirmed_sign_agreement
@@ -93,12 +107,8 @@ class Guard:
         if reason := self.heading(told):
             return f"without headings nothing tells whether a smell means one place: {reason}"
         if told.ambiguous > self.most_ambiguous_place:
-            return f"a smell means several places: {self._elsewhere(told.ambiguous)}"
+            return (
+                f"{told.ambiguous:.0%} of its charts smell and head like others far away: a smell means "
+                "several places; use more odour sources, not all on one line"
+            )
         return ""
-
-    @staticmethod
-    def _elsewhere(share: float) -> str:
-        return (
-            f"{share:.0%} of its charts smell and head like others far away; use more odour sources, not all "
-            "on one line, or a landmark more"
-        )

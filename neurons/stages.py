@@ -10,7 +10,7 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from neurons.atlas.ambiguity import ambiguous_share
+from neurons.atlas.ambiguity import far_share, poses_told
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.connection import LearntConnection
 from neurons.atlas.heading_axis import heading_axes
@@ -286,7 +286,8 @@ class CorrectedMetricMapStage(MetricMapStage):
         smells, phases = circuit.readout.intercepts, circuit.readout.phases
         circuit.place.disambiguate(smells, phases, edges)
         headings = phases + circuit.metric_map(circuit.place, smells).offset
-        circuit.ambiguity.fill_(ambiguous_share(smells, headings, edges))
+        told = (poses_told(smells, headings, edges), circuit.charts.centres)
+        circuit.ambiguity = circuit.ambiguity.new_tensor([far_share(each, edges) for each in told])
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
-"""Ambiguity of an atlas: whether smell and heading tell its charts apart, or fit several places."""
+"""Ambiguity of an atlas: whether what is most alike to a sense is near over the atlas, or elsewhere."""
 
 import numpy as np
+import torch
 from jaxtyping import Float, Int
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
@@ -8,28 +9,20 @@ from scipy.spatial import KDTree
 from torch import Tensor
 
 
-def ambiguous_share(
-    smells: Float[Tensor, "charts odorants"],
-    headings: Float[Tensor, "charts"],
+def far_share(
+    told: Float[Tensor, "charts features"],
     edges: Int[Tensor, "edges 2"],
     *,
     nearest: int = 3,
     far: int = 5,
     asked: int = 300,
 ) -> float:
-    """Share of the charts most alike in smell and heading that are far from each other over the atlas.
-
-    Position and heading are all that a pose is. So what smells alike and heads alike is one pose, near to
-    itself over overlapping charts too, unless a smell means several places, or places that look alike have
-    been taken for one and its headings are made up. Differences of smell and of heading count in units of
-    their medians across an overlap.
+    """Share of the charts most alike in what is told of them that are far from each other over the atlas.
 
     Parameters
     ----------
-    smells
-        Log odours of the charts.
-    headings
-        In the map's own frame, rad; NaN without a compass.
+    told
+        Of each chart, such that the distance is how much two differ.
     edges
         Overlapping charts.
     nearest
@@ -41,19 +34,33 @@ def ambiguous_share(
 
     Returns
     -------
-    From 0 to 1; NaN without a compass.
+    From 0 to 1; NaN where anything told is.
     """
-    if headings.isnan().any():
+    if told.isnan().any():
         return float("nan")
-    odour, angle = smells.double().cpu().numpy(), headings.double().cpu().numpy()
+    points = told.double().cpu().numpy()
     k, j = edges.cpu().numpy().T
-    # tiny, so that smells that are all the same leave the headings to decide
-    unit = max(float(np.median(np.linalg.norm(odour[k] - odour[j], axis=1))), 1e-12)
-    turn = max(float(np.median(np.abs(np.angle(np.exp(1j * (angle[k] - angle[j])))))), 1e-12)
-    told = np.column_stack([odour / unit, np.cos(angle) / turn, np.sin(angle) / turn])
-    looked = np.arange(0, len(told), max(1, len(told) // asked))
-    alike = np.asarray(KDTree(told).query(told[looked], nearest + 1)[1])
-    graph = csr_array((np.ones(2 * len(k)), (np.r_[k, j], np.r_[j, k])), shape=(len(told),) * 2)
-    steps = dijkstra(graph, unweighted=True, indices=looked, limit=far)
+    looked = np.arange(0, len(points), max(1, len(points) // asked))
+    alike = np.asarray(KDTree(points).query(points[looked], min(nearest + 1, len(points)))[1])
+    graph = csr_array((np.ones(2 * len(k)), (np.r_[k, j], np.r_[j, k])), shape=(len(points),) * 2)
+    steps = np.take_along_axis(dijkstra(graph, unweighted=True, indices=looked, limit=far), alike, axis=1)
     # a chart is no steps from itself, wherever it stands among its likes
-    return float(np.isinf(np.take_along_axis(steps, alike, axis=1)).sum() / (len(looked) * nearest))
+    return float(np.isinf(steps).sum() / (len(looked) * nearest))
+
+
+def poses_told(
+    smells: Float[Tensor, "charts odorants"],
+    headings: Float[Tensor, "charts"],
+    edges: Int[Tensor, "edges 2"],
+) -> Float[Tensor, "charts odorants_and_2"]:
+    """Put log odours and headings (rad) of charts together, each in units of its median across overlaps.
+
+    Position and heading are all that a pose is. So what smells alike and heads alike is one pose, near to
+    itself over the atlas too, unless a smell means several places, or places that look alike have been taken
+    for one, whose headings then are made up.
+    """
+    k, j = edges.T
+    # tiny, so that smells that are all the same leave the headings to decide
+    unit = (smells[k] - smells[j]).norm(dim=1).median().clamp(min=1e-12)
+    turn = torch.sin((headings[k] - headings[j]) / 2).abs().median().mul(2).clamp(min=1e-12)
+    return torch.cat([smells / unit, headings.cos()[:, None] / turn, headings.sin()[:, None] / turn], dim=1)

@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import torch
 from jaxtyping import Float, Int, Shaped
+from scipy.stats import chi2
 from torch import Tensor, nn
 
 DIMENSIONS = 3
@@ -33,10 +34,11 @@ class Charts(nn.Module):
 
     1 the winner: smell keeps places apart that look alike, and where one place is seen its weight λ is too
     small to move a border. The medians are running ones over the winners of an epoch: neither the order of
-    views nor the noise of the nose need be known. The chart of rank r learns with h = exp(−2 r / m): C_k and
-    a_k move to the running means of h z and h o, and U_k follows Sanger's rule on the residuals z − C_k,
-    normalised by their variance as in `neurons.layers.sanger.Sanger`. `freeze` makes the tangents
-    orthonormal; after it nothing here changes any more.
+    views nor the noise of the nose need be known. That of smell is told from the lower decile, as if misfits
+    were normal, since where most places look alike it would be that of two places. The chart of rank r learns
+    with h = exp(−2 r / m): C_k and a_k move to the running means of h z and h o, and U_k follows Sanger's
+    rule on the residuals z − C_k, normalised by their variance as in `neurons.layers.sanger.Sanger`. `freeze`
+    makes the tangents orthonormal; after it nothing here changes any more.
 
     Parameters
     ----------
@@ -75,6 +77,7 @@ class Charts(nn.Module):
         self.initialised: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self.misfits: Tensor = nn.Buffer(torch.ones(2))
         self.measured: Tensor = nn.Buffer(torch.zeros(()))
+        self.median_over_decile = float(chi2.ppf(0.5, odorants) / chi2.ppf(0.1, odorants))
 
     def __len__(self) -> int:
         return len(self.centres)
@@ -219,8 +222,10 @@ class Charts(nn.Module):
         window: float,
     ) -> None:
         """Keep running medians of the squared misfits of the winners, which say what smell is to count."""
-        # a median, as views won by a place that only looks alike smell of another
-        squares = torch.stack([each.square().sum(dim=1).median() for each in (residuals, misfits)])
+        sight, smell = (each.square().sum(dim=1) for each in (residuals, misfits))
+        # most views may be won by a place that only looks alike and smells of another, but not nine in ten
+        usual = self.median_over_decile * smell.quantile(0.1)
+        squares = torch.stack([sight.median(), usual])
         self.measured *= max(0.0, 1 - len(residuals) / window)
         self.measured += len(residuals)
         self.misfits += len(residuals) / self.measured * (squares - self.misfits)
