@@ -72,8 +72,8 @@ class Guard:
             return f"its heading axes agree only to {signs:.3f}; use more charts or more odour sources"
         return ""
 
-    def heading(self, told: Agreement) -> str:
-        """Say why headings are not to be trusted, or nothing when they are."""
+    def poses(self, told: Agreement) -> str:
+        """Say that poses have been taken for others, or nothing when none seem to have been."""
         if told.foretold < 0:
             return (
                 "what follows a view lies anywhere but ahead of it: poses that look and smell alike are one "
@@ -89,6 +89,12 @@ class Guard:
                 f"{told.aliased:.1%} of its charts look like others far away, which sight alone does not "
                 "tell apart; set a landmark where they differ, or perceive with odours too"
             )
+        return ""
+
+    def heading(self, told: Agreement) -> str:
+        """Say why headings are not to be trusted, or nothing when they are."""
+        if reason := self.poses(told):
+            return reason
         doubt = self.atlas(told.signs, told.phases)
         confirmed = told.foretold >= self.confirming_r2
         nearly = told.phases >= self.confirmed_eigenvalue and told.signs >= self.confirmed_sign_agreement

@@ -116,6 +116,10 @@ class Network(Circuit):
         """Say why there is no metric map, or nothing when there is one."""
         return self.unfinished or self.metric_map.diagnosis()
 
+    def position_diagnosis(self) -> str:
+        """Say why positions on the metric map cannot be trusted, or nothing when they can."""
+        return self.metric_diagnosis() or self.guard.poses(self.told)
+
     @property
     def unfinished(self) -> str:
         """In which stage it still learns; empty in the last."""

@@ -48,7 +48,11 @@ def guards(request: pytest.FixtureRequest) -> Iterator[list[str]]:
 
     grown = request.config.stash.setdefault(GROWN, set())
     near: list[str] = []
-    asked = {"atlas_diagnosis": ("signs", "phases"), "metric_diagnosis": ("metric",)}
+    asked = {
+        "atlas_diagnosis": ("signs", "phases"),
+        "heading_diagnosis": ("signs", "phases"),
+        "metric_diagnosis": ("metric",),
+    }
     with pytest.MonkeyPatch.context() as patch:
         for method, names in asked.items():
             patch.setattr(Network, method, _watched(getattr(Network, method), names, grown, near))

@@ -281,7 +281,7 @@ class CognitiveMap:
         return Diagnosis(
             heading=Verdict(network.heading_diagnosis()),
             place=Verdict(network.place_diagnosis()),
-            metric_map=Verdict(network.metric_diagnosis()),
+            metric_map=Verdict(network.position_diagnosis()),
             topology=topology,
         )
 

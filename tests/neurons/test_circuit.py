@@ -1,10 +1,13 @@
+import math
+
 import pytest
 import torch
 
 from neurons.circuit import Circuit
+from neurons.guard import Guard
 
 
-def circuit(*, most_charts: int = 60, **bounds: float) -> Circuit:
+def circuit(*, most_charts: int = 60, guard: Guard | None = None) -> Circuit:
     return Circuit(
         30,
         3,
@@ -14,29 +17,20 @@ def circuit(*, most_charts: int = 60, **bounds: float) -> Circuit:
         place_cells=10,
         heading_cells=6,
         generator=torch.Generator().manual_seed(0),
-        **bounds,
+        guard=guard,
     )
 
 
-@pytest.mark.parametrize(
-    ("signs", "phases", "bounds", "said"),
-    [
-        (1.0, 0.9, {}, "too coarse"),
-        (0.9, 0.9999, {}, "heading axes"),
-        (torch.nan, torch.nan, {}, "no loop"),
-        (1.0, 0.9999, {}, ""),
-        (1.0, 0.9, {"least_eigenvalue": 0.85}, ""),
-        (1.0, 0.9999, {"least_eigenvalue": 0.99995}, "below 0.99995"),
-        (0.9, 0.9999, {"least_sign_agreement": 0.85}, ""),
-        (0.996, 0.9999, {"least_sign_agreement": 0.997}, "heading axes"),
-    ],
-)
-def test_diagnosis_of_the_atlas(signs: float, phases: float, bounds: dict[str, float], said: str) -> None:
-    guarded = circuit(**bounds)
-    guarded.agreement = torch.tensor([signs, phases])
-    reason = guarded.atlas_diagnosis()
-    assert said in reason
-    assert bool(reason) == bool(said)
+def test_the_guard_is_told_what_the_circuit_knows() -> None:
+    guarded = circuit(guard=Guard(least_eigenvalue=0.5))
+    assert all(math.isnan(figure) for figure in guarded.told if not isinstance(figure, bool))
+    guarded.agreement = torch.tensor([0.9, 0.8])
+    guarded.connected.fill_(True)  # noqa: FBT003
+    guarded.metric_map.cross_validated_r2 = torch.tensor([0.7, 0.6])
+    guarded.ambiguity = torch.tensor([0.5, 0.4])
+    assert guarded.told == pytest.approx((0.9, 0.8, True, 0.6, 0.5, 0.4))
+    assert guarded.atlas_diagnosis() == guarded.guard.atlas(*guarded.agreement.tolist())
+    assert "heading axes" in guarded.atlas_diagnosis()
 
 
 def test_recall_is_code_charts_and_readout() -> None:
@@ -52,6 +46,12 @@ def test_recall_is_code_charts_and_readout() -> None:
     assert torch.equal(recalled.excited.chart, nearest)
     trusted = seeing.readout(seeing.charts, codes, seeing.readout.excite(seeing.charts, codes))
     torch.testing.assert_close(recalled, trusted)
+    smells = torch.randn(5, 3, generator=generator)
+    seeing.charts.smells = torch.randn(40, 3, generator=generator)
+    both = seeing.recall(strips, smells)
+    points = torch.cat([codes, seeing.charts.smell_weight * smells], dim=1)
+    assert torch.equal(both.chart, torch.cdist(points, seeing.charts.points).argsort()[:, :8])
+    assert not torch.equal(both.chart, recalled.chart)
 
 
 @pytest.mark.parametrize(("most", "charts"), [(60, 60), (100, 80)])
@@ -61,7 +61,8 @@ def test_added_charts_keep_what_does_not_stand_on_charts(most: int, charts: int)
     for name in ("olfaction.gram", "readout.phases", "place.centres", "heading.afferents.activity"):
         grown.get_buffer(name).fill_(1.0)
     grown.place.branches.fill_(False)  # noqa: FBT003
-    grown.agreement.fill_(1.0)
+    for name in ("agreement", "ambiguity", "connected"):
+        grown.get_buffer(name).fill_(1.0)
     grown.add_charts()
     assert len(grown.charts) == charts
     assert (grown.place.centres == 1).all()
@@ -74,3 +75,5 @@ def test_added_charts_keep_what_does_not_stand_on_charts(most: int, charts: int)
     assert not grown.heading.afferents.activity.any()
     assert len(grown.heading.afferents.activity) == charts
     assert grown.agreement.isnan().all()
+    assert grown.ambiguity.isnan().all()
+    assert not grown.connected

@@ -60,25 +60,29 @@ def test_each_layer_learns_in_its_own_period_and_is_then_fixed(network: Network)
 
 def test_an_unfinished_network_is_not_to_be_trusted(network: Network) -> None:
     network.agreement = torch.tensor([1.0, 0.9999])
+    answers = ("heading", "place", "metric", "position")
+
+    def reasons() -> dict[str, str]:
+        return {answer: getattr(network, f"{answer}_diagnosis")() for answer in answers}
+
     for stage in STAGES[:-1]:
         network.views_seen.fill_(network.begins(stage.name))
-        assert f"{stage.name!r} stage" in network.diagnosis()
-        assert f"{stage.name!r} stage" in network.metric_diagnosis()
+        assert all(f"{stage.name!r} stage" in reason for reason in reasons().values())
     network.views_seen.fill_(network.begins(STAGES[-1].name))
-    assert not network.diagnosis()
-    assert network.metric_diagnosis() == network.metric_map.diagnosis()
-    network.agreement = torch.tensor([1.0, 0.99])
-    assert network.diagnosis() == network.atlas_diagnosis()
-
-
-def test_a_learnt_connection_is_trusted_only_where_the_metric_map_confirms_it(network: Network) -> None:
-    network.agreement = torch.tensor([1.0, 0.9999])
-    network.views_seen.fill_(network.begins(STAGES[-1].name))
-    network.connected.logical_not_()
-    assert network.metric_map.diagnosis() in network.diagnosis()
-    assert "connection" in network.diagnosis()
+    untried = network.metric_map.diagnosis()
+    assert reasons() == {"heading": "", "place": "", "metric": untried, "position": untried}
     network.metric_map.cross_validated_r2.fill_(0.95)
-    assert network.diagnosis() == ""
+    assert not any(reasons().values())
+    network.ambiguity = torch.tensor([0.5, 0.0])
+    told = network.told
+    alike = network.guard.poses(told)
+    assert alike
+    assert reasons() == {
+        "heading": alike,
+        "place": network.guard.place(told),
+        "metric": "",
+        "position": alike,
+    }
 
 
 @pytest.mark.parametrize(("most", "charts"), [(100, 100), (500, 120), (60, 60)])
@@ -112,5 +116,5 @@ def test_charts_are_added_while_they_do_not_agree(
     while network.views_seen < network.begins("afferents") + 100:
         network.learn(*stream(50, int(network.views_seen)))
     assert len(network.charts) == charts
-    assert network.diagnosis() == ""
+    assert network.heading_diagnosis() == ""
     assert {len(network.place.afferents.weights), len(network.heading.afferents.weights)} == {charts}

@@ -1,0 +1,77 @@
+import math
+from typing import Any
+
+import pytest
+
+from neurons.guard import Agreement, Guard
+
+SOUND = Agreement(signs=1.0, phases=0.9999, connected=False, foretold=0.97, ambiguous=0.0, aliased=0.0)
+
+
+def told(**figures: Any) -> Agreement:
+    return SOUND._replace(**figures)
+
+
+@pytest.mark.parametrize(
+    ("signs", "phases", "bounds", "said"),
+    [
+        (1.0, 0.9, {}, "too coarse"),
+        (0.9, 0.9999, {}, "heading axes"),
+        (math.nan, math.nan, {}, "no loop"),
+        (1.0, 0.9999, {}, ""),
+        (1.0, 0.9, {"least_eigenvalue": 0.85}, ""),
+        (1.0, 0.9999, {"least_eigenvalue": 0.99995}, "below 0.99995"),
+        (0.9, 0.9999, {"least_sign_agreement": 0.85}, ""),
+        (0.996, 0.9999, {"least_sign_agreement": 0.997}, "heading axes"),
+    ],
+)
+def test_atlas(signs: float, phases: float, bounds: dict[str, float], said: str) -> None:
+    reason = Guard(**bounds).atlas(signs, phases)
+    assert said in reason
+    assert bool(reason) == bool(said)
+
+
+@pytest.mark.parametrize(
+    ("figures", "said"),
+    [
+        ({}, ""),
+        # no walk, no evidence: charts that agree will do
+        ({"foretold": math.nan}, ""),
+        ({"foretold": 0.3}, ""),
+        ({"foretold": -0.1}, "anywhere but ahead"),
+        ({"ambiguous": 0.3}, "30% of its charts smell and head"),
+        ({"ambiguous": 0.2}, ""),
+        ({"aliased": 0.02}, "2.0% of its charts look like"),
+        ({"aliased": 0.01}, ""),
+        ({"phases": 0.998}, ""),
+        ({"phases": 0.998, "foretold": 0.89}, "agree only to 0.9980"),
+        ({"phases": 0.998, "foretold": math.nan}, "agree only to 0.9980"),
+        ({"phases": 0.997}, "agree only to 0.9970"),
+        ({"signs": 0.98}, ""),
+        ({"signs": 0.96}, "heading axes"),
+        ({"phases": 0.998, "signs": 0.96}, "agree only"),
+        ({"connected": True}, ""),
+        ({"connected": True, "foretold": 0.85}, "foretells 0.85 of the other"),
+        ({"connected": True, "foretold": math.nan}, "walking does not confirm"),
+        ({"phases": math.nan, "signs": math.nan}, "no loop"),
+    ],
+)
+def test_heading(figures: dict[str, Any], said: str) -> None:
+    reason = Guard().heading(told(**figures))
+    assert said in reason
+    assert bool(reason) == bool(said)
+
+
+def test_place_needs_heading_and_smells_that_mean_one_place() -> None:
+    guard = Guard()
+    assert guard.place(SOUND) == ""
+    assert guard.place(told(ambiguous=0.02)) == ""
+    assert "several places; use more odour sources" in guard.place(told(ambiguous=0.1))
+    assert guard.heading(told(phases=0.9)) in guard.place(told(phases=0.9))
+
+
+def test_positions_need_poses_that_are_not_taken_for_others() -> None:
+    guard = Guard()
+    assert guard.poses(told(phases=0.9, signs=0.9)) == ""
+    for figures in ({"foretold": -1.0}, {"ambiguous": 0.4}, {"aliased": 0.1}):
+        assert guard.poses(told(**figures)) == guard.heading(told(**figures)) != ""
