@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
+from dataclasses import fields
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,7 +19,6 @@ from arena import Arena
 from cogmap import plots
 from cogmap.atomic import result_folder
 from cogmap.cells import decode_positions, fit_heading_frame, fit_map_frame, heading_errors, place_map
-from cogmap.errors import CogmapError
 from cogmap.evaluation.homology_of_map import homologies
 from cogmap.evaluation.populations import usual_charts
 from cogmap.experiments.conditions import Conditions
@@ -26,6 +26,7 @@ from cogmap.experiments.provenance import write_provenance
 from cogmap.experiments.result import Result
 from cogmap.experiments.trial import Trial
 from cogmap.inputs import checked_count
+from cogmap.map.diagnosis import Diagnosis
 from cogmap.shape.homology import Betti
 
 LANDMARKS = (400, 150)
@@ -65,13 +66,14 @@ def demo(
     Returns
     -------
     dict
-        The figures of `cogmap.score`, the nose's own position error, Betti numbers, which of them are
-        resolved and why the others are not, seconds by stage, memory.
+        Whether the map, its heading, place, metric map and topology are to be trusted; the figures of
+        `cogmap.score`, the nose's own position error, Betti numbers, which of them are resolved and why the
+        others are not, seconds by stage, memory. What a map without a compass cannot say is left out.
 
     Raises
     ------
     ArenaError, CogmapError
-        For a room or counts that cannot work, a folder that holds something else, or a map without a compass.
+        For a room or counts that cannot work, or a folder that holds something else.
     """
     checked_count("views", views, 20)
     charts = usual_charts(views) if charts is None else charts
@@ -84,8 +86,6 @@ def demo(
             trial = Trial.of(conditions)
         with clock("learn"):
             cmap = trial.cmap
-        if not np.isfinite(cmap.phase_eigenvalue_):
-            raise CogmapError(f"the map has no compass: {cmap.reason_}")
         with clock("perceive"):
             learnt, _ = trial.train, trial.test
         with clock("score"):
@@ -105,6 +105,7 @@ def demo(
             "trusted": cmap.trusted_,
             "reason": cmap.reason_,
             "metric_reason": cmap.metric_reason_,
+            **_verdicts(cmap.diagnosis(bars)),
             **figures,
             **{f"betti_{name}": list(found.numbers) for name, found in bars.items()},
             **{f"betti_{name}_resolved": list(found.resolved) for name, found in bars.items()},
@@ -130,13 +131,21 @@ def _timed(seconds: dict[str, float], stage: str) -> Iterator[None]:
     seconds[stage] = round(time.perf_counter() - started, 3)
 
 
+def _verdicts(told: Diagnosis) -> dict[str, Any]:
+    """Four answers, each trusted or not, and why not."""
+    verdicts = {field.name: getattr(told, field.name) for field in fields(told)}
+    reasons = {name: verdict.reason for name, verdict in verdicts.items()}
+    return {
+        **{f"{name}_trusted": verdict.trusted for name, verdict in verdicts.items()},
+        "reasons": reasons,
+    }
+
+
 def _draw(trial: Trial, bars: dict[str, Betti]) -> Result:
     """Draw what the score is of, the very maps and statistics that it has measured."""
     train, poses = trial.truth.train, trial.truth.poses
     positions, headings = poses[:, :2], poses[:, 2]
     learnt, fresh = trial.train, trial.test
-    frame = fit_heading_frame(learnt.phase, train[:, 2])
-    aligned = headings + heading_errors(fresh.phase, headings, frame)
     sheet = np.linspace(0, len(train) - 1, 18).astype(int)
     recalled = decode_positions(learnt.odour, train[:, :2], fresh.odour)
     smelt = decode_positions(trial.smells[0], train[:, :2], trial.smells[1])
@@ -144,11 +153,15 @@ def _draw(trial: Trial, bars: dict[str, Betti]) -> Result:
         "room": plots.plot_room(trial.conditions.room, train),
         "views": plots.plot_views(np.asarray(trial.walk[sheet].views), train[sheet]),
         "place_cells": plots.plot_rate_maps(trial.place.maps, trial.place.place),
-        "heading_cells": plots.plot_tuning_curves(trial.heading.tuning.curves, trial.heading.heading),
-        "compass": plots.plot_compass(aligned, headings, positions),
         "position": plots.plot_position(recalled, positions, smelt),
         "barcodes": plots.plot_barcodes(bars),
     }
+    if not np.isnan(fresh.phase).all():
+        frame = fit_heading_frame(learnt.phase, train[:, 2])
+        aligned = headings + heading_errors(fresh.phase, headings, frame)
+        curves = trial.heading.tuning.curves
+        drawings["heading_cells"] = plots.plot_tuning_curves(curves, trial.heading.heading)
+        drawings["compass"] = plots.plot_compass(aligned, headings, positions)
     if not np.isnan(fresh.position).all():
         laid = place_map(fresh.position, fit_map_frame(learnt.position, train[:, :2]))
         drawings["metric_map"] = plots.plot_metric_map(laid, positions)
