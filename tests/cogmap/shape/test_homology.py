@@ -197,16 +197,38 @@ def test_result_says_how_sure_it_is() -> None:
     assert f"{found.ratios[1][0]:.2f}" in str(found)
 
 
-def test_a_graph_of_more_neighbours_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_looks_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     from cogmap.shape import homology  # noqa: PLC0415
 
     X = cylinder(300, np.random.default_rng(8))
-    asked: list[list[int]] = []
-    monkeypatch.setattr(homology, "doubt", lambda *args: asked.append([k for k, _ in args[3]]) or "so")
+    asked: list[list[str]] = []
+    monkeypatch.setattr(homology, "doubt", lambda *args: asked.append([how for how, _ in args[3]]) or "so")
     assert betti(X, landmarks=FEWER).reasons == ("so",) * 3
     assert betti(X, landmarks=FEWER, check=None, draws=1).resolved == (False,) * 3
     assert betti(X[:25], check=25, draws=1).numbers[0] == 1
-    assert asked == [[25]] * 3 + [[]] * 6
+    assert betti(X, "euclidean", landmarks=FEWER, draws=1).metric == "euclidean"
+    more, pieces = "with 25 neighbours", "without outliers"
+    assert asked == [[more, pieces], [more], [more]] + 2 * [[pieces], [], []] + 3 * [[]]
+
+
+def test_the_second_graph_has_its_own_neighbours_and_thresholds(monkeypatch: pytest.MonkeyPatch) -> None:
+    from cogmap.shape import homology  # noqa: PLC0415
+
+    X = np.unique(cylinder(400, np.random.default_rng(8)), axis=0)
+    alone = betti(X, landmarks=FEWER, draws=1, neighbours=25, check=None)
+    told: list[np.ndarray] = []
+    monkeypatch.setattr(homology, "doubt", lambda *args: told.append(args[3][0][1]) or "")
+    betti(X, landmarks=FEWER, draws=1)
+    np.testing.assert_array_equal(told[1], alone.ratios[1] / alone.thresholds[1])
+    np.testing.assert_array_equal(told[2], alone.ratios[2] / alone.thresholds[2])
+
+
+def test_pieces_that_a_few_strays_join_are_not_resolved() -> None:
+    X = two_discs(800, np.random.default_rng(14))
+    for strays, reason in ((0, ""), (3, "without outliers it is 2")):
+        bridge = np.column_stack([1.5 + 0.03 * np.arange(strays), np.zeros(strays)])
+        found = betti(np.vstack([X, bridge]), max_dimension=0, landmarks=FEWER)
+        assert (found.numbers, found.reasons) == ((1 if strays else 2,), (reason,)), str(found)
 
 
 def test_short_cuts_are_shunned() -> None:
@@ -229,7 +251,7 @@ def test_fewer_dimensions_on_request() -> None:
 def test_majority_of_the_draws_decides(monkeypatch: pytest.MonkeyPatch) -> None:
     from cogmap.shape import homology  # noqa: PLC0415
 
-    loops = iter([3, 1, 1, 0, 2])
+    loops = iter([3, 1, 1, 0, 2, 1])
     bars = np.array([[1.0, 9.0]])
     monkeypatch.setattr(
         homology,
