@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from cogmap import Activity, Betti
+from cogmap.evaluation import homology_of_map
 from cogmap.evaluation.homology_of_map import SMELL, homologies, seen_and_smelt, unless_aliased
 from cogmap.graph import nearest_points
 
@@ -40,6 +41,31 @@ def test_smell_counts_by_its_noise_whatever_the_order() -> None:
     np.testing.assert_allclose(joint[:, 3:] / smells, SMELL * radius / 0.2, rtol=0.1)
     order = rng.permutation(900)
     np.testing.assert_allclose(seen_and_smelt(codes[order], smells[order]), joint[order], rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("joint", "aliased"),
+    [((1, 1, 0), {"fused"}), ((1, 2, 1), {"view_manifold", "place"}), (None, set())],
+)
+def test_clouds_that_sight_makes_are_judged_by_both_senses(
+    joint: tuple[int, ...] | None, aliased: set[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # In the order of the clouds.
+    told = iter([(1, 1, 0), (1, 2, 1), (1, 0, 0), (1, 1, 0), joint])
+    monkeypatch.setattr(homology_of_map, "betti", lambda *_, **__: betti_of(next(told)))
+    activity = Activity(
+        place=np.ones((40, 3)),
+        heading=np.ones((40, 3)),
+        phase=np.ones(40),
+        odour=np.ones((40, 2)),
+        position=np.ones((40, 2)),
+    )
+    rng = np.random.default_rng(1)
+    found = homologies(
+        rng.normal(size=(40, 2)), activity, None if joint is None else rng.normal(size=(40, 2))
+    )
+    assert ("seen_and_smelt" in found) == (joint is not None)
+    assert {name for name, cloud in found.items() if not all(cloud.resolved)} == aliased
 
 
 def test_ideal_populations_have_the_shape_of_what_they_code() -> None:

@@ -33,8 +33,8 @@ def test_a_close_call_is_not(number: int, draw: np.ndarray, reason: str) -> None
 
 def test_the_median_draw_decides() -> None:
     sure, unsure = bars(3, 0.5), bars(1.01, 0.99)
-    assert doubt(1, 1, [sure, unsure, sure], []) == ""
-    assert doubt(1, 1, [unsure, unsure, sure], []) != ""
+    assert doubt(1, 1, [unsure, sure, sure], []) == ""
+    assert doubt(1, 1, [sure, unsure, unsure], []) != ""
 
 
 def test_another_look_must_count_as_many() -> None:
