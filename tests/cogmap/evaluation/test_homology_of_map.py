@@ -70,7 +70,7 @@ def test_clouds_that_sight_makes_are_judged_by_both_senses(
 
 def test_ideal_populations_have_the_shape_of_what_they_code() -> None:
     rng = np.random.default_rng(0)
-    xy, heading = rng.uniform(-1, 1, (4000, 2)), rng.uniform(-np.pi, np.pi, 4000)
+    xy, heading = rng.uniform(-1, 1, (3000, 2)), rng.uniform(-np.pi, np.pi, 3000)
     centres = rng.uniform(-1.2, 1.2, (80, 2))
     preferred = np.linspace(-np.pi, np.pi, 30, endpoint=False)
     activity = Activity(
@@ -82,7 +82,7 @@ def test_ideal_populations_have_the_shape_of_what_they_code() -> None:
     )
     codes = np.column_stack([xy, 0.8 * np.cos(heading), 0.8 * np.sin(heading)])
     smells = rng.normal(xy, 0.05)
-    found = homologies(codes, activity, smells, landmarks=(150, 80), draws=2)
+    found = homologies(codes, activity, smells, landmarks=(150, 80), draws=1)
     assert {name: bars.numbers for name, bars in found.items()} == {
         "view_manifold": (1, 1, 0),
         "seen_and_smelt": (1, 1, 0),
@@ -90,4 +90,4 @@ def test_ideal_populations_have_the_shape_of_what_they_code() -> None:
         "place": (1, 0, 0),
         "heading": (1, 1, 0),
     }
-    assert {bars.draws for bars in found.values()} == {2}
+    assert {bars.draws for bars in found.values()} == {1}

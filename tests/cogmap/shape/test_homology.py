@@ -1,4 +1,5 @@
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -201,14 +202,20 @@ def test_other_looks_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     from cogmap.shape import homology  # noqa: PLC0415
 
     X = cylinder(300, np.random.default_rng(8))
-    asked: list[list[str]] = []
-    monkeypatch.setattr(homology, "doubt", lambda *args: asked.append([how for how, _ in args[3]]) or "so")
+    asked: list[tuple[int, list[str]]] = []
+
+    def doubt(*args: Any) -> str:
+        asked.append((len(args[2]), [how for how, _ in args[3]]))
+        return "so"
+
+    monkeypatch.setattr(homology, "doubt", doubt)
     assert betti(X, landmarks=FEWER).reasons == ("so",) * 3
     assert betti(X, landmarks=FEWER, check=None, draws=1).resolved == (False,) * 3
     assert betti(X[:25], check=25, draws=1).numbers[0] == 1
     assert betti(X, "euclidean", landmarks=FEWER, draws=1).metric == "euclidean"
     more, pieces = "with 25 neighbours", "without outliers"
-    assert asked == [[more, pieces], [more], [more]] + 2 * [[pieces], [], []] + 3 * [[]]
+    assert asked[:3] == [(3, [more, pieces]), (3, [more]), (3, [more])]
+    assert asked[3:] == 2 * [(1, [pieces]), (1, []), (1, [])] + 3 * [(1, [])]
 
 
 def test_the_second_graph_has_its_own_neighbours_and_thresholds(monkeypatch: pytest.MonkeyPatch) -> None:
