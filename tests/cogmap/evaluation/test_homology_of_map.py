@@ -33,8 +33,8 @@ def test_places_are_multiplied_by_the_circle_of_headings(
 
 def test_smell_counts_by_its_noise_whatever_the_order() -> None:
     rng = np.random.default_rng(0)
-    codes, smells = rng.uniform(size=(900, 3)), np.zeros((900, 2))
-    smells = rng.normal(smells, 0.2)
+    codes = rng.uniform(size=(900, 3))
+    smells = rng.normal(codes[:, :2], 0.2)
     joint = seen_and_smelt(codes, smells)
     np.testing.assert_array_equal(joint[:, :3], codes)
     radius = np.median(nearest_points(codes, 15).distances[:, -1])
