@@ -56,8 +56,8 @@ def gridness(correlograms: Float[np.ndarray, "cells lags_y lags_x"]) -> Float[np
         )
         return ratio(n * xy - x * y, np.sqrt(np.maximum((n * xx - x**2) * (n * yy - y**2), 0.0)))
 
-    high = np.minimum(correlation(60), correlation(120))
-    low = np.maximum(np.maximum(correlation(30), correlation(90)), correlation(150))
+    # Half a turn changes nothing: r₁₂₀ and r₁₅₀ are r₆₀ and r₃₀.
+    high, low = correlation(60), np.maximum(correlation(30), correlation(90))
     wide = np.arange(radii) >= np.maximum(2 * inner, inner + 3)[:, None]
     scores = np.where(wide, high - low, np.nan)
     best = np.max(np.nan_to_num(scores, nan=-np.inf), axis=1)
