@@ -137,7 +137,9 @@ def _features(coordinates: int, rng: np.random.Generator) -> Callable[[Points], 
     return lambda X: X @ axes + 0.7 * np.sqrt(coordinates / FEATURES) * np.cos(X @ waves + phases)
 
 
-def _alike(X: Points, here: Points, there: Points, look: Callable[[Points], Points]) -> Points:
+def _alike(
+    X: Points, here: Float[np.ndarray, "2"], there: Float[np.ndarray, "2"], look: Callable[[Points], Points]
+) -> Float[np.ndarray, "points features"]:
     """Let what is seen around one place be what is seen around another, the nearer to it the more."""
     moved = X.copy()
     moved[:, :2] += there - here
@@ -146,7 +148,7 @@ def _alike(X: Points, here: Points, there: Points, look: Callable[[Points], Poin
     return np.asarray(share * look(moved) + (1 - share) * look(X))
 
 
-def _smell(X: Points, rng: np.random.Generator) -> Points:
+def _smell(X: Points, rng: np.random.Generator) -> Float[np.ndarray, "points odorants"]:
     """Log odours of three sources, as a noisy nose smells them."""
     sources = rng.uniform(-1, 1, (3, 2))
     apart = np.linalg.norm(X[:, None, :2] - sources, axis=2)

@@ -125,7 +125,8 @@ def betti(
     sense can (`cogmap.evaluation.homology_of_map`).
 
     In the geodesic metric the pieces are those of the neighbour graph. In the others a piece is what a gap
-    wider than the threshold sets apart, if it holds at least 1 % of the points; else it is left out.
+    wider than the threshold sets apart, if it holds at least 1 % of the points; else it is left out. Those of
+    a neighbour graph are resolved if this tells as many.
 
     Parameters
     ----------
@@ -167,9 +168,9 @@ def betti(
     spreads = on_all_cores(
         delayed(rips.farthest_points)(seen, max(wanted), start) for seen, _, start in looks
     )
+    apart = [seen.among(spread.indices) for (seen, *_), spread in zip(looks, spreads, strict=True)]
     tasks = []
-    for (seen, around, _), spread in zip(looks, spreads, strict=True):
-        distances = seen.among(spread.indices)
+    for (_, around, _), spread, distances in zip(looks, spreads, apart, strict=True):
         for dimension, count in enumerate(wanted):
             # Here, because a threshold that must be simulated is kept for the draws that follow.
             limit = betti_thresholds.threshold(
@@ -181,6 +182,13 @@ def betti(
             )
             held = spread.held if judged == "euclidean" and dimension == 0 else None
             tasks.append(delayed(_find)(distances[:count, :count], dimension, limit, held))
+    checks = [f"with {around} neighbours" for _, around, _ in looks[draws:]]
+    if judged == "geodesic":
+        # A few strays join pieces of a neighbour graph. The last of the tasks is one of dimension 0.
+        checks.append("without outliers")
+        known = min(len(apart[0]), betti_thresholds.LANDMARKS[0][-1])
+        limit = betti_thresholds.threshold("euclidean", 0, points=len(space), landmarks=known)
+        tasks.append(delayed(_find)(apart[0], 0, limit, spreads[0].held))
     found = on_all_cores(tasks)
     by_dimension = [tuple(found[dimension :: len(wanted)]) for dimension in range(len(wanted))]
     chosen, votes = zip(*(_majority(items[:draws]) for items in by_dimension), strict=True)
@@ -189,10 +197,7 @@ def betti(
             dimension,
             item.number,
             [draw.over for draw in items[:draws]],
-            [
-                (around, other.over)
-                for other, (_, around, _) in zip(items[draws:], looks[draws:], strict=True)
-            ],
+            [(check, other.over) for other, check in zip(items[draws:], checks, strict=False)],
         )
         for dimension, (item, items) in enumerate(zip(chosen, by_dimension, strict=True))
     )

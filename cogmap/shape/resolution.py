@@ -15,12 +15,12 @@ One pair each, calibrated on clouds of known holes (`cogmap.evaluation.betti_cal
 """
 
 
-def doubt(dimension: int, number: int, draws: Sequence[Over], checks: Sequence[tuple[int, Over]]) -> str:
+def doubt(dimension: int, number: int, draws: Sequence[Over], checks: Sequence[tuple[str, Over]]) -> str:
     """Say in one sentence why a Betti number is not resolved; the empty one when it is.
 
     In the median draw the bars that count must stand well over the threshold and the next well under it, and
-    a graph of other neighbours must count as many. Nothing of this can expose a real short cut: where two
-    places look alike their views *are* near to each other, in every draw, in every half, in every graph.
+    every other look must count as many. Nothing of this can expose a real short cut: where two places look
+    alike their views *are* near to each other, in every draw, in every half, in every graph.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def doubt(dimension: int, number: int, draws: Sequence[Over], checks: Sequence[t
     draws
         Bars of every draw of landmarks.
     checks
-        Other numbers of neighbours, and the bars in their graphs.
+        How else it was looked at, as "with 25 neighbours", and the bars that were found.
     """
     least, most = MARGINS[dimension]
     # What stands before the first bar is sure, and of a bar that is not there nothing is left.
@@ -41,7 +41,7 @@ def doubt(dimension: int, number: int, draws: Sequence[Over], checks: Sequence[t
         return f"its weakest bar stands at {weakest:.2f} of the threshold, below {least}"
     if strongest > most:
         return f"a bar that does not count stands at {strongest:.2f} of the threshold, above {most}"
-    for neighbours, bars in checks:
+    for check, bars in checks:
         if (counted := int(np.count_nonzero(bars > 1))) != number:
-            return f"with {neighbours} neighbours it is {counted}"
+            return f"{check} it is {counted}"
     return ""

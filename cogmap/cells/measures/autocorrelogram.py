@@ -24,14 +24,14 @@ def autocorrelograms(maps: RateMaps) -> Float[np.ndarray, "cells lags_y lags_x"]
     """
     sides = maps.visited.shape
     shape = [fft.next_fast_len(2 * side - 1, real=True) for side in sides]
-    lags = np.ix_(*(np.arange(1 - side, side) % length for side, length in zip(sides, shape, strict=True)))
+    rows, columns = (np.arange(1 - side, side) % length for side, length in zip(sides, shape, strict=True))
     visited = maps.visited.astype(float)
     # About their mean: sums of squares that cancel lose fewer digits.
     rates = np.where(maps.visited, maps.rates - maps.patterns.mean(axis=1)[:, None, None], 0.0)
     known, first, second = (fft.rfft2(values, shape) for values in (visited, rates, rates**2))
 
     def correlate(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-        return np.asarray(fft.irfft2(one.conj() * other, shape)[..., *lags])
+        return np.asarray(fft.irfft2(one.conj() * other, shape)[..., rows[:, None], columns])
 
     count = np.rint(correlate(known, known))
     sums, squares, products = correlate(first, known), correlate(second, known), correlate(first, first)
@@ -43,4 +43,4 @@ def autocorrelograms(maps: RateMaps) -> Float[np.ndarray, "cells lags_y lags_x"]
     least = count * size[:, None, None]
     enough = (count >= LEAST_OVERLAP) & (np.minimum(spread, spread_ahead) > least)
     scale = np.sqrt(np.where(enough, spread * spread_ahead, 0.0))
-    return np.clip(ratio(count * products - sums * ahead, scale), -1.0, 1.0)
+    return np.asarray(np.clip(ratio(count * products - sums * ahead, scale), -1.0, 1.0))

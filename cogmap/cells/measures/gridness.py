@@ -56,8 +56,8 @@ def gridness(correlograms: Float[np.ndarray, "cells lags_y lags_x"]) -> Float[np
         )
         return ratio(n * xy - x * y, np.sqrt(np.maximum((n * xx - x**2) * (n * yy - y**2), 0.0)))
 
-    high = np.minimum(correlation(60), correlation(120))
-    low = np.maximum(np.maximum(correlation(30), correlation(90)), correlation(150))
+    # Half a turn changes nothing: r₁₂₀ and r₁₅₀ are r₆₀ and r₃₀.
+    high, low = correlation(60), np.maximum(correlation(30), correlation(90))
     wide = np.arange(radii) >= np.maximum(2 * inner, inner + 3)[:, None]
     scores = np.where(wide, high - low, np.nan)
     best = np.max(np.nan_to_num(scores, nan=-np.inf), axis=1)
@@ -117,7 +117,8 @@ def _circles(
     point = np.tile(np.arange(len(up)), 4)
     keep = weight > 1e-12
     read = sparse.csr_array((weight[keep], (point[keep], index[keep])), shape=(len(up), rows * columns))
-    return np.asarray((read @ correlograms.reshape(len(correlograms), -1).T).T).reshape(-1, radii, len(angle))
+    circles: np.ndarray = (read @ correlograms.reshape(len(correlograms), -1).T).T
+    return circles.reshape(-1, radii, len(angle))
 
 
 def _central_radius(circles: Float[np.ndarray, "cells radii directions"]) -> Int[np.ndarray, "cells"]:
@@ -127,7 +128,7 @@ def _central_radius(circles: Float[np.ndarray, "cells radii directions"]) -> Int
     over = np.zeros(mean.shape, dtype=bool)
     over[:, 1:] = ~(mean[:, 1:] >= CENTRE)
     over[:, :-1] |= mean[:, 1:] > mean[:, :-1]
-    return np.where(over.any(axis=1), over.argmax(axis=1), circles.shape[1])
+    return np.asarray(np.where(over.any(axis=1), over.argmax(axis=1), circles.shape[1]))
 
 
 def _between(
@@ -140,4 +141,4 @@ def _between(
     """How far beyond its bin, along an axis, each peak of a parabola is."""
     dy, dx = step
     before, here, after = (heights[cell, row + k * dy, column + k * dx] for k in (-1, 0, 1))
-    return np.nan_to_num(ratio(after - before, 2 * (2 * here - before - after)))
+    return np.asarray(np.nan_to_num(ratio(after - before, 2 * (2 * here - before - after))))

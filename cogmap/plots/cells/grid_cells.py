@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 
 from cogmap.cells.measures.autocorrelogram import autocorrelograms
+from cogmap.cells.rates.bins import BinEdges
 from cogmap.cells.rates.maps import RateMaps
 from cogmap.errors import CogmapError
-from cogmap.plots.cells.place_cells import COLOURS
-from cogmap.plots.style import ABSENT, BAD, INK, TINY, colour_bar, new_panels, tidy, title_sheet
+from cogmap.plots.style import BAD, INK, TINY, colour_bar, draw_bins, new_panels, tidy, title_sheet
 
 
 def plot_grid_cells(maps: RateMaps, statistics: pd.DataFrame, count: int = 8) -> Figure:
@@ -39,40 +38,27 @@ def plot_grid_cells(maps: RateMaps, statistics: pd.DataFrame, count: int = 8) ->
         raise CogmapError(f"count is {count}; give the number of cells to draw, at least 1")
     cells = np.argsort(-statistics["gridness"].to_numpy(dtype=float), kind="stable")[:count]
     panel = 1.35  # inches
-    figure, panels = new_panels(
-        panel * len(cells) + 1.2, 2 * panel + 0.9, 2, len(cells), squeeze=False, sharex="row", sharey="row"
-    )
-    x, y = maps.edges
-    wide, high = x[-1] - x[0] - maps.edges.side / 2, y[-1] - y[0] - maps.edges.side / 2
+    ny, nx = maps.visited.shape
+    width, height = panel * len(cells) + 1.2, 2 * panel * ny / nx + 1.3
+    figure, panels = new_panels(width, height, 2, len(cells), squeeze=False, sharex="row", sharey="row")
     correlograms = autocorrelograms(maps)
-    for column, cell in enumerate(cells):
-        shown, peak = statistics.iloc[cell], np.nanmax(maps[cell])
-        room, lags = panels[:, column]
-        known = np.isfinite(shown["spacing_m"])
-        spacing = f"\nspacing {shown['spacing_m']:.2f} m" if known else "\nno lattice"
-        named = {"x": "x (m)", "y": "y (m)"} if column == 0 else {}
-        said = f"gridness {shown['gridness']:.2f}{spacing}".replace("-", "−")
-        tidy(room, title=said, size=TINY, **named)
-        room.title.set_color(INK if shown["passing"] else BAD)
-        part = maps[cell] / (peak if peak > 0 else 1.0)
-        drawn = room.imshow(
-            part, cmap=COLOURS, vmin=0, vmax=1, origin="lower", extent=(x[0], x[-1], y[0], y[-1])
-        )
-        named = {"x": "shift along x (m)", "y": "along y (m)"} if column == 0 else {}
-        tidy(lags, **named)
-        signed = colormaps["RdBu_r"].with_extremes(bad=ABSENT)
-        correlated = lags.imshow(
-            correlograms[cell],
-            cmap=signed,
-            vmin=-1,
-            vmax=1,
-            origin="lower",
-            extent=(-wide, wide, -high, high),
-        )
-    title_sheet(figure, f"{len(cells)} of {len(maps)} cells as grid cells", statistics["passing"])
-    for axes, scale, label in (
-        (panels[0], drawn, "rate (of peak)"),
-        (panels[1], correlated, "correlation"),
-    ):
-        colour_bar(axes[-1], scale, label)
+    rates = maps.rates[cells]
+    peaks = np.nanmax(rates, axis=(1, 2), keepdims=True)
+    # The bins of a shift are as wide, around none.
+    shifts = BinEdges(*(maps.edges.side * (np.arange(2 * bins) - bins + 0.5) for bins in (nx, ny)))
+    for axes, cell, part in zip(panels.T, cells, rates / np.where(peaks > 0, peaks, 1.0), strict=True):
+        drawn = draw_bins(axes[0], maps.edges, part, "viridis", low=0.0, high=1.0)
+        correlated = draw_bins(axes[1], shifts, correlograms[cell], "RdBu_r", low=-1.0, high=1.0)
+        labels = (("x (m)", "y (m)"), ("shift (m)", "shift (m)")) if cell == cells[0] else (("", ""),) * 2
+        for each, (x, y) in zip(axes, labels, strict=True):
+            tidy(each, x=x, y=y)
+            each.set_aspect("equal")
+        shown = statistics.iloc[cell]
+        lattice = f"{shown['spacing_m']:.2f} m" if np.isfinite(shown["spacing_m"]) else "no lattice"
+        said = f"{shown['gridness']:.2f}, {lattice}".replace("-", "−")
+        axes[0].set_title(said, fontsize=TINY, color=INK if shown["passing"] else BAD)
+    heading = f"{len(cells)} of {len(maps)} cells as grid cells: gridness and spacing"
+    title_sheet(figure, heading, statistics["passing"])
+    colour_bar(panels[0, -1], drawn, "rate (of peak)")
+    colour_bar(panels[1, -1], correlated, "correlation")
     return figure

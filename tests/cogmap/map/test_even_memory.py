@@ -49,6 +49,11 @@ def test_until_it_is_full_it_keeps_all_but_repeats() -> None:
     assert memory.spacing_ == 0
 
 
+def test_of_the_two_that_are_nearest_the_newer_one_is_forgotten() -> None:
+    memory = EvenMemory(3).partial_fit(np.array([[0.0], [10.0], [10.4], [5.0], [5.1]]))
+    assert set(memory.indices_) == {0, 1, 3}
+
+
 def test_views_are_kept_as_they_are_and_compared_by_their_codes() -> None:
     images = np.random.default_rng(3).integers(256, size=(300, 4, 5, 3), dtype=np.uint8)
     codes = walk(300, 3)

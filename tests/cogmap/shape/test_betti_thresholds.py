@@ -40,9 +40,13 @@ def test_between_the_entries_lies_between(kind: str, dimension: int) -> None:
     assert corners[0] == table[2, 3]
 
 
-@pytest.mark.parametrize("metric", ["geodesic", "euclidean"])
-def test_more_points_deceive_less_and_more_landmarks_more(metric: null.Metric) -> None:
-    crowds = [null.threshold(metric, 1, points=400 * crowd, landmarks=400) for crowd in null.CROWDS[1:]]
+@pytest.mark.parametrize("kind", KINDS)
+def test_more_points_deceive_less_and_more_landmarks_more(kind: str) -> None:
+    metric, neighbours, _ = KINDS[kind]
+    crowds = [
+        null.threshold(metric, 1, points=400 * crowd, landmarks=400, neighbours=neighbours)
+        for crowd in null.CROWDS[1:]
+    ]
     assert (np.diff(crowds) < 0).all()
     counts = [null.threshold(metric, 1, points=4 * count, landmarks=count) for count in null.LANDMARKS[1]]
     assert (np.diff(counts) > 0).all()
@@ -66,13 +70,15 @@ def test_outside_the_table_is_simulated() -> None:
     assert 1 < few < null.threshold("euclidean", 1, points=240, landmarks=60)
 
 
-def test_numbers_of_neighbours_have_their_own_null() -> None:
+def test_numbers_of_neighbours_have_their_own_null(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(null, "CLOUDS", 10)
+
     def limit(neighbours: int) -> float:
         return null.threshold("geodesic", 1, points=400, landmarks=25, neighbours=neighbours)
 
     assert limit(15) == limit(24) != limit(25) == limit(40)
     few = null.threshold("geodesic", 1, points=50, landmarks=25, neighbours=5)
-    assert few == null._simulated("geodesic", 1, 50, 25, 5)
+    assert few == null._worst_quantiles("geodesic", 50, [(1, 25)], 10, 5)
     straight = null.threshold("euclidean", 1, points=50, landmarks=25)
     assert null.threshold("euclidean", 1, points=50, landmarks=25, neighbours=5) == straight
 

@@ -1,4 +1,5 @@
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pytest
@@ -77,16 +78,19 @@ SPACES: dict[Sampler, tuple[int, int, int]] = {
 }
 FEW = (200, 100)
 """Landmarks that are enough here, and quick."""
+FEWER = (100, 60)
+"""Enough to tell whether two answers are the same."""
 
 
 @pytest.mark.parametrize("space", SPACES, ids=lambda space: space.__name__)
 def test_known_spaces(space: Sampler) -> None:
-    assert_betti(space(1500, np.random.default_rng(0)), SPACES[space], landmarks=FEW)
+    assert_betti(space(1500, np.random.default_rng(0)), SPACES[space], landmarks=FEW, draws=1)
 
 
 @pytest.mark.parametrize("space", [circle, torus, sphere, disc, ball, two_discs], ids=lambda s: s.__name__)
 def test_known_spaces_by_straight_lines(space: Sampler) -> None:
-    assert_betti(space(1500, np.random.default_rng(1)), SPACES[space], "euclidean", landmarks=FEW)
+    X = space(1500, np.random.default_rng(1))
+    assert_betti(X, SPACES[space], "euclidean", landmarks=FEW, draws=1)
 
 
 @pytest.mark.parametrize("space", [circle, solid_torus, torus, disc], ids=lambda s: s.__name__)
@@ -95,7 +99,7 @@ def test_known_spaces_in_many_dimensions_with_noise(space: Sampler) -> None:
     X = space(2000, rng)
     axes = np.linalg.qr(rng.normal(size=(30, X.shape[1])))[0]
     X = X @ axes.T + rng.normal(scale=0.03, size=(2000, 30))
-    assert_betti(X.astype(np.float32), SPACES[space], landmarks=FEW)
+    assert_betti(X.astype(np.float32), SPACES[space], landmarks=FEW, draws=1)
 
 
 @pytest.mark.parametrize("space", [circle, sphere, disc, ball, two_discs], ids=lambda s: s.__name__)
@@ -115,8 +119,8 @@ def test_precomputed_distances_may_be_infinite_between_pieces() -> None:
 
 def test_precomputed_distances_give_what_the_points_give() -> None:
     X = np.unique(cylinder(600, np.random.default_rng(4)), axis=0)
-    points = betti(X, "euclidean", landmarks=FEW)
-    distances = betti(cdist(X, X), "precomputed", landmarks=FEW)
+    points = betti(X, "euclidean", landmarks=FEWER)
+    distances = betti(cdist(X, X), "precomputed", landmarks=FEWER)
     assert points.numbers == distances.numbers
     for one, other in zip(points.bars, distances.bars, strict=True):
         np.testing.assert_array_equal(one, other)
@@ -124,9 +128,9 @@ def test_precomputed_distances_give_what_the_points_give() -> None:
 
 @pytest.mark.parametrize("space", [cylinder, two_discs], ids=lambda s: s.__name__)
 def test_neighbour_graph_gives_what_the_points_give(space: Sampler) -> None:
-    X = np.unique(space(800, np.random.default_rng(12)), axis=0)
-    points = betti(X, landmarks=FEW)
-    graph = betti(neighbour_graph(X), "precomputed", landmarks=FEW)
+    X = np.unique(space(500, np.random.default_rng(12)), axis=0)
+    points = betti(X, landmarks=FEWER)
+    graph = betti(neighbour_graph(X), "precomputed", landmarks=FEWER)
     assert str(graph) == str(points).replace("geodesic", "precomputed")
     for one, other in zip(points.bars, graph.bars, strict=True):
         np.testing.assert_array_equal(one, other)
@@ -142,26 +146,26 @@ def test_outliers_are_no_pieces() -> None:
 
 def test_same_seed_and_any_order_give_the_same() -> None:
     rng = np.random.default_rng(6)
-    X = solid_torus(800, rng)
-    one = betti(X, seed=3, draws=2, landmarks=FEW)
-    same = betti(rng.permutation(np.concatenate([X, X[:50]])), seed=3, draws=2, landmarks=FEW)
-    assert one.points == same.points == 800
+    X = solid_torus(500, rng)
+    one = betti(X, seed=3, draws=2, landmarks=FEWER)
+    same = betti(rng.permutation(np.concatenate([X, X[:50]])), seed=3, draws=2, landmarks=FEWER)
+    assert one.points == same.points == 500
     assert str(one) == str(same)
     for bars, others in zip(one.bars, same.bars, strict=True):
         np.testing.assert_array_equal(bars, others)
-    assert str(one) != str(betti(X, seed=4, draws=2, landmarks=FEW))
+    assert str(one) != str(betti(X, seed=4, draws=2, landmarks=FEWER))
 
 
 def test_bars_are_the_same_on_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
     from cogmap.graph import shortest_paths  # noqa: PLC0415
     from cogmap.shape import homology  # noqa: PLC0415
 
-    X = torus(700, np.random.default_rng(13))
+    X = torus(400, np.random.default_rng(13))
     several = []
     for cores in (1, 3):
         for module in (homology, shortest_paths):
             monkeypatch.setattr(module, "cpu_count", lambda cores=cores: cores)
-        several.append(betti(X, landmarks=FEW))
+        several.append(betti(X, landmarks=FEWER))
     assert str(several[0]) == str(several[1])
     for one, other in zip(several[0].bars, several[1].bars, strict=True):
         np.testing.assert_array_equal(one, other)
@@ -169,7 +173,7 @@ def test_bars_are_the_same_on_one_core(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_bars_are_those_of_the_landmarks() -> None:
     X = np.unique(cylinder(500, np.random.default_rng(7)), axis=0)
-    found = betti(X, seed=11, draws=1, landmarks=(100, 60))
+    found = betti(X, seed=11, draws=1, landmarks=FEWER)
     start = int(np.random.default_rng(11).integers(500, size=1)[0])
     seen = geodesic(X, 15)
     distances = seen.among(farthest_points(seen, 100, start).indices)
@@ -194,16 +198,44 @@ def test_result_says_how_sure_it_is() -> None:
     assert f"{found.ratios[1][0]:.2f}" in str(found)
 
 
-def test_a_graph_of_more_neighbours_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_other_looks_must_agree(monkeypatch: pytest.MonkeyPatch) -> None:
     from cogmap.shape import homology  # noqa: PLC0415
 
-    X = cylinder(900, np.random.default_rng(8))
-    asked: list[list[int]] = []
-    monkeypatch.setattr(homology, "doubt", lambda *args: asked.append([k for k, _ in args[3]]) or "so")
-    assert betti(X, landmarks=FEW).reasons == ("so",) * 3
-    assert betti(X, landmarks=FEW, check=None, draws=1).resolved == (False,) * 3
+    X = cylinder(300, np.random.default_rng(8))
+    asked: list[tuple[int, list[str]]] = []
+
+    def doubt(*args: Any) -> str:
+        asked.append((len(args[2]), [how for how, _ in args[3]]))
+        return "so"
+
+    monkeypatch.setattr(homology, "doubt", doubt)
+    assert betti(X, landmarks=FEWER).reasons == ("so",) * 3
+    assert betti(X, landmarks=FEWER, check=None, draws=1).resolved == (False,) * 3
     assert betti(X[:25], check=25, draws=1).numbers[0] == 1
-    assert asked == [[25]] * 3 + [[]] * 6
+    assert betti(X, "euclidean", landmarks=FEWER, draws=1).metric == "euclidean"
+    more, pieces = "with 25 neighbours", "without outliers"
+    assert asked[:3] == [(3, [more, pieces]), (3, [more]), (3, [more])]
+    assert asked[3:] == 2 * [(1, [pieces]), (1, []), (1, [])] + 3 * [(1, [])]
+
+
+def test_the_second_graph_has_its_own_neighbours_and_thresholds(monkeypatch: pytest.MonkeyPatch) -> None:
+    from cogmap.shape import homology  # noqa: PLC0415
+
+    X = np.unique(cylinder(400, np.random.default_rng(8)), axis=0)
+    alone = betti(X, landmarks=FEWER, draws=1, neighbours=25, check=None)
+    told: list[np.ndarray] = []
+    monkeypatch.setattr(homology, "doubt", lambda *args: told.append(args[3][0][1]) or "")
+    betti(X, landmarks=FEWER, draws=1)
+    np.testing.assert_array_equal(told[1], alone.ratios[1] / alone.thresholds[1])
+    np.testing.assert_array_equal(told[2], alone.ratios[2] / alone.thresholds[2])
+
+
+def test_pieces_that_a_few_strays_join_are_not_resolved() -> None:
+    X = two_discs(800, np.random.default_rng(14))
+    for strays, reason in ((0, ""), (3, "without outliers it is 2")):
+        bridge = np.column_stack([1.5 + 0.03 * np.arange(strays), np.zeros(strays)])
+        found = betti(np.vstack([X, bridge]), max_dimension=0, landmarks=FEWER)
+        assert (found.numbers, found.reasons) == ((1 if strays else 2,), (reason,)), str(found)
 
 
 def test_short_cuts_are_shunned() -> None:
@@ -226,7 +258,7 @@ def test_fewer_dimensions_on_request() -> None:
 def test_majority_of_the_draws_decides(monkeypatch: pytest.MonkeyPatch) -> None:
     from cogmap.shape import homology  # noqa: PLC0415
 
-    loops = iter([3, 1, 1, 0, 2])
+    loops = iter([3, 1, 1, 0, 2, 1])
     bars = np.array([[1.0, 9.0]])
     monkeypatch.setattr(
         homology,

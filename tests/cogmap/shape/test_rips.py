@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
 from ripser import ripser
+from scipy.sparse.csgraph import shortest_path
 from scipy.spatial.distance import cdist
 from sklearn.manifold import Isomap
 
-from cogmap.graph.neighbour_graph import SMALLEST
-from cogmap.shape.rips import Given, euclidean, farthest_points, geodesic, ratios, rips_bars
+from cogmap.graph.neighbour_graph import SMALLEST, lengthen_shortcuts, neighbour_graph
+from cogmap.shape.rips import Given, euclidean, farthest_points, geodesic, geodesics, ratios, rips_bars
 
 
 @pytest.fixture
@@ -48,6 +49,17 @@ def test_only_pieces_live_for_ever() -> None:
     pieces, loops = rips_bars(distances, [0, 1])
     assert np.isinf(pieces[:, 1]).sum() == 2
     np.testing.assert_allclose(loops, np.outer([1, 3], [2 * np.sin(np.pi / 12), np.sqrt(3)]))
+
+
+def test_of_more_neighbours_more_must_be_shared() -> None:
+    X = np.random.default_rng(3).normal(size=(300, 30))
+    found = geodesics(X, (15, 25))
+    for space, neighbours in zip(found, (15, 25), strict=True):
+        graph, some = neighbour_graph(X, neighbours), np.arange(60)
+        with_3, with_5 = (shortest_path(lengthen_shortcuts(graph, shared), indices=some) for shared in (3, 5))
+        assert np.mean(with_3 != with_5) > 0.01
+        expected = {15: with_3, 25: with_5}[neighbours][:, some]
+        np.testing.assert_allclose(space.among(some), expected, rtol=1e-6)
 
 
 def test_ratio_is_death_over_birth_and_for_pieces_over_the_median() -> None:

@@ -1,9 +1,12 @@
 from collections.abc import Callable
+from dataclasses import replace
+from itertools import repeat
 
 import numpy as np
 import pandas as pd
 import pytest
 
+from cogmap.cells.measures import grid
 from cogmap.cells.measures.grid import grid_statistics
 from cogmap.cells.rates.maps import rate_maps
 from cogmap.errors import CogmapError
@@ -39,6 +42,31 @@ def test_only_grids_pass(wander: Callable, hexagonal: Callable) -> None:
     np.testing.assert_allclose(chances.loc["grid"], 1 / 21)
     assert chances.loc["square"].min() > 0.9
     assert chances.loc["noise"].max() > 0.05
+
+
+@pytest.mark.parametrize("null", ["band_noise", "shuffled_fields"])
+def test_what_one_of_the_nulls_reaches_does_not_pass(
+    wander: Callable, hexagonal: Callable, monkeypatch: pytest.MonkeyPatch, null: str
+) -> None:
+    positions, _ = wander(3000)
+    pure = rate_maps(hexagonal(positions, 0.8)[:, None], positions, smoothing=0.08)
+    noise = np.random.default_rng(0).gamma(1, 0.05, pure.rates.shape)
+    cell = replace(pure, rates=pure.rates + noise)
+    assert grid_statistics(cell, shuffles=20)["passing"].all()
+    monkeypatch.setattr(grid, null, lambda *_: repeat(pure))
+    assert not grid_statistics(cell, shuffles=20)["passing"].any()
+
+
+def test_three_fields_are_no_grid_however_regular(wander: Callable, bump: Callable) -> None:
+    positions, _ = wander(3000)
+    corners = 0.46 * np.exp(2j * np.pi * np.arange(3) / 3)
+    rates = sum(bump(positions, (corner.real, corner.imag), 0.15) for corner in corners)
+    maps = rate_maps(rates[:, None], positions, smoothing=0.08)
+    table = grid_statistics(maps, shuffles=20)
+    assert table["fields"][0] == 3
+    assert table[["band_noise_p", "field_shuffle_p"]].max(axis=None) < 0.05
+    assert not table["passing"][0]
+    assert grid_statistics(maps, shuffles=20, least_fields=3)["passing"][0]
 
 
 def test_same_seed_same_table_and_no_shuffle_is_refused(wander: Callable, hexagonal: Callable) -> None:

@@ -21,7 +21,7 @@ def maps() -> RateMaps:
 @pytest.fixture
 def statistics() -> pd.DataFrame:
     return pd.DataFrame(
-        {"gridness": [0.2, np.nan, 1.1], "spacing_m": [np.nan, np.nan, 0.5], "passing": [False, False, True]}
+        {"gridness": [-0.2, np.nan, 1.1], "spacing_m": [np.nan, np.nan, 0.5], "passing": [False, False, True]}
     )
 
 
@@ -32,12 +32,13 @@ def test_the_most_grid_like_come_first_each_over_its_autocorrelogram(
     above, below = np.reshape(figure.axes[:4], (2, 2))
     correlograms = autocorrelograms(maps)
     for room, lags, cell in zip(above, below, (2, 0), strict=True):
-        np.testing.assert_allclose(room.images[0].get_array(), maps[cell] / np.nanmax(maps[cell]))
-        np.testing.assert_allclose(lags.images[0].get_array(), correlograms[cell])
-    assert above[0].get_title() == "gridness 1.10\nspacing 0.50 m"
-    assert above[1].get_title() == "gridness 0.20\nno lattice"
+        (drawn,), (correlated,) = room.collections, lags.collections
+        np.testing.assert_allclose(drawn.get_array().filled(np.nan), maps[cell] / np.nanmax(maps[cell]))
+        np.testing.assert_allclose(correlated.get_array().filled(np.nan), correlograms[cell])
+    assert [axes.get_title() for axes in above] == ["1.10, 0.50 m", "−0.20, no lattice"]
     assert [axes.title.get_color() for axes in above] == [INK, BAD]
-    np.testing.assert_allclose(below[0].images[0].get_extent(), [-1.45, 1.45, -1.15, 1.15])
+    np.testing.assert_allclose(correlated.get_coordinates()[[0, -1], [0, -1]], [[-1.45, -1.15], [1.45, 1.15]])
+    assert figure.get_suptitle().startswith("2 of 3 cells as grid cells")
 
 
 def test_bad_input_is_refused(maps: RateMaps, statistics: pd.DataFrame) -> None:
