@@ -29,7 +29,8 @@ def test_every_eye_and_number_of_charts_is_a_case() -> None:
     assert blurred["position_median_m"] > 1.5 * usual["position_median_m"]
     assert not coarse["trusted"]
     assert "charts" in coarse["reason"]
-    assert coarse["place_cells_passing"] == coarse["heading_cells_passing"] == 0
+    assert coarse["place_cells_passing"] < 0.5 * usual["place_cells_passing"]
+    assert coarse["heading_cells_passing"] == 0
     assert usual["heading_median_deg"] < 10
     assert result.metrics["90_columns_533_charts"]["position_median_m"] == usual["position_median_m"]
     assert result.figures.keys() == {"acuity"}
