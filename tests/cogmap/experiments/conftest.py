@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 @pytest.fixture(scope="module", autouse=True)
 def _no_layout() -> Iterator[None]:
-    """Leave the parts of figures where they begin, and draw them once: to lay them out is tested elsewhere."""
+    """Leave the parts of figures where they begin, and draw them once: how they lie is tested elsewhere."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Figure, "get_layout_engine", lambda _: None)
         yield

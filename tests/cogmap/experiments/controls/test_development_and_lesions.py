@@ -7,7 +7,7 @@ from cogmap.experiments import Conditions
 from cogmap.experiments.controls.development_and_lesions import _agreement, _mature, development
 from cogmap.experiments.result import Result
 
-VIEWS = 3000
+VIEWS = 2000
 
 
 @pytest.fixture(scope="module")
