@@ -12,7 +12,8 @@ VIEWS = 2000
 
 @pytest.fixture(scope="module")
 def result() -> Result:
-    conditions = Conditions(Arena.load("furnished"), VIEWS, camera=Camera.panoramic(90, 15))
+    few = {"place_cells": 80, "heading_cells": 30}
+    conditions = Conditions(Arena.load("furnished"), VIEWS, camera=Camera.panoramic(90, 15), map=few)
     return development(conditions, after=(30, 300), silent=(0.0, 0.5))
 
 
