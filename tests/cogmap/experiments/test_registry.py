@@ -23,7 +23,7 @@ VIEWS = {
     "localisation": 200,
     "roadmap": 800,
     "distinguishability": 200,
-    "fusion": 300,
+    "fusion": 200,
     "odour_ablation": 200,
 }
 KEYS = {
