@@ -70,7 +70,7 @@ def _draw_curve(axes: Axes, curve: Float[np.ndarray, " bins"], *, first: bool) -
     tidy(axes, x="heading (°)" if first else "", y="rate / peak" if first else "")
     # One collection: as many bars are most of the time that the figure takes.
     colours = HUES((left + right) / 720 + 0.5)
-    axes.add_collection(PolyCollection(corners.transpose(2, 0, 1), facecolors=colours))
+    axes.add_collection(PolyCollection(list(corners.transpose(2, 0, 1)), facecolors=colours))
     axes.axhline(0, color=SOFT, linewidth=0.4)
     axes.set(xlim=(-180, 180), ylim=(0, 1.05), xticks=QUARTERS, yticks=[0, 1])
     if not first:
