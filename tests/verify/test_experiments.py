@@ -115,6 +115,16 @@ BARS: dict[str, list[tuple[str, str, Any]]] = {
             )
         ]
     ],
+    "development": [
+        ("driven/place_cells_passing", "≥", 0.95),
+        ("driven/heading_cells_passing", "≥", 0.95),
+        ("views_to_mature/heading", "≤", 3000),
+        ("views_to_mature/place", "≤", 10_000),
+        ("smell_first/trusted", "=", True),
+        ("smell_first/views_to_mature_in_the_dark", "≤", 3000),
+        ("smell_first/views_to_mature/heading", "≤", 3000),
+        ("smell_first/views_to_mature/place", "≤", 10_000),
+    ],
     "goals": [
         ("ring_betti", "=", [1, 1]),
         ("place_cells_passing", "≥", 0.9),

@@ -72,8 +72,9 @@ def development(
     of the two.
 
     Positions are read from the rates of place cells by the decoder of `score`, headings from those of heading
-    cells by linear regression of their cosine and sine; both know some 4,000 of the training views. Cells are
-    measured `after` so many views and after the last; the `silent` are shares of charts.
+    cells by linear regression of their cosine and sine, off by 90° like any guess where these are silent,
+    as in the dark; both know some 4,000 of the training views. Cells are measured `after` so many views and
+    after the last; the `silent` are shares of charts.
     """
     trial = Trial.of(conditions)
     walk, cmap = trial.walk, trial.cmap

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from jaxtyping import Float
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 from cogmap.cells.rates.maps import RateMaps
@@ -62,10 +63,14 @@ def _draw_map(axes: Axes, maps: RateMaps, cell: int, *, first: bool) -> None:
 
 
 def _draw_curve(axes: Axes, curve: Float[np.ndarray, " bins"], *, first: bool) -> None:
-    degrees = -180 + (np.arange(len(curve)) + 0.5) * 360 / len(curve)
-    part = curve / np.nanmax(curve)
+    edges = np.linspace(-180, 180, len(curve) + 1)
+    part = np.nan_to_num(curve / np.nanmax(curve))
+    left, right, floor = edges[:-1], edges[1:], np.zeros(len(curve))
+    corners = np.array([(left, floor), (left, part), (right, part), (right, floor)])
     tidy(axes, x="heading (°)" if first else "", y="rate / peak" if first else "")
-    axes.bar(degrees, np.nan_to_num(part), width=360 / len(curve), color=HUES((degrees + 180) / 360))
+    # One collection: as many bars are most of the time that the figure takes.
+    colours = HUES((left + right) / 720 + 0.5)
+    axes.add_collection(PolyCollection(list(corners.transpose(2, 0, 1)), facecolors=colours))
     axes.axhline(0, color=SOFT, linewidth=0.4)
     axes.set(xlim=(-180, 180), ylim=(0, 1.05), xticks=QUARTERS, yticks=[0, 1])
     if not first:

@@ -1,12 +1,12 @@
 from collections.abc import Iterator
 
 import pytest
-from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.figure import Figure
 
 
 @pytest.fixture(scope="module", autouse=True)
 def _no_layout() -> Iterator[None]:
-    """Leave the parts of figures where they begin: to lay them out, which plots are tested for, is slow."""
+    """Leave the parts of figures where they begin, and draw them once: how they lie is tested elsewhere."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ConstrainedLayoutEngine, "execute", lambda *_: None)
+        patch.setattr(Figure, "get_layout_engine", lambda _: None)
         yield

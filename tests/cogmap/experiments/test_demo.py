@@ -24,7 +24,7 @@ KEYS = {
 @pytest.fixture(scope="module")
 def result(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, Any]]:
     out = tmp_path_factory.mktemp("demo") / "out"
-    return out, demo(Arena.load("furnished"), out, views=5000, landmarks=(150, 60), seed=1)
+    return out, demo(Arena.load("furnished"), out, views=5000, landmarks=(100, 40), seed=1)
 
 
 def test_it_writes_every_figure_the_map_and_the_metrics(result: tuple[Path, dict[str, Any]]) -> None:

@@ -10,7 +10,7 @@ from cogmap.evaluation.scoring import score
 from cogmap.experiments import Conditions
 from cogmap.experiments.trial import Trial, show_cells
 
-CONDITIONS = Conditions(Arena.load("furnished"), 1200, seed=1)
+CONDITIONS = Conditions(Arena.load("furnished"), 600, seed=1)
 
 
 @pytest.fixture(scope="module")
@@ -19,11 +19,11 @@ def trial() -> Trial:
 
 
 def test_it_is_two_walks_a_map_and_the_truth(trial: Trial) -> None:
-    assert len(trial.walk) == len(trial.fresh) == 1200
+    assert len(trial.walk) == len(trial.fresh) == 600
     assert not np.array_equal(trial.walk.require("poses"), trial.fresh.require("poses"))
     np.testing.assert_array_equal(trial.truth.train, trial.walk.require("poses"))
     np.testing.assert_array_equal(trial.truth.poses, trial.fresh.require("poses"))
-    assert (trial.cmap.charts, trial.cmap.seed) == (400, 1)
+    assert (trial.cmap.charts, trial.cmap.seed) == (200, 1)
     np.testing.assert_array_equal(trial.codes[1], trial.cmap.encode(trial.fresh.views))
     assert trial.place.rates.shape == trial.test.place.shape
     assert trial.cmap is trial.cmap

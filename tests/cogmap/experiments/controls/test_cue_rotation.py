@@ -22,7 +22,7 @@ def test_what_is_seen_turns_with_the_walls_and_what_is_smelt_does_not() -> None:
 
 
 def test_sight_follows_the_walls_and_smell_stays() -> None:
-    metrics = run_experiment("cue_rotation", views=3000, camera=Camera.panoramic(90, 15)).metrics
+    metrics = run_experiment("cue_rotation", views=2500, camera=Camera.panoramic(90, 15)).metrics
     assert metrics["place_follows_walls_light"] > 0.95
     assert metrics["place_follows_walls_dark"] < 0.05
     assert metrics["correlation_faint_smells"] < metrics["correlation_dark_smells"] - 0.1

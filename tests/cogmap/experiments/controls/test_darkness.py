@@ -3,7 +3,7 @@ from cogmap.experiments.registry import run_experiment
 
 
 def test_the_same_cells_tell_the_same_place_by_either_sense() -> None:
-    result = run_experiment("darkness", views=1600, camera=Camera.panoramic(90, 15))
+    result = run_experiment("darkness", views=2000, camera=Camera.panoramic(90, 15))
     sight, smell = result.metrics["sight"], result.metrics["smell"]
     assert result.metrics["map_correlation"] > 0.5
     assert sight["place_cells_passing"] > 0.5

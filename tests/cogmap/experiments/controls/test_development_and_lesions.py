@@ -7,12 +7,13 @@ from cogmap.experiments import Conditions
 from cogmap.experiments.controls.development_and_lesions import _agreement, _mature, development
 from cogmap.experiments.result import Result
 
-VIEWS = 3000
+VIEWS = 2000
 
 
 @pytest.fixture(scope="module")
 def result() -> Result:
-    conditions = Conditions(Arena.load("furnished"), VIEWS, camera=Camera.panoramic(90, 15))
+    few = {"place_cells": 80, "heading_cells": 30}
+    conditions = Conditions(Arena.load("furnished"), VIEWS, camera=Camera.panoramic(90, 15), map=few)
     return development(conditions, after=(30, 300), silent=(0.0, 0.5))
 
 

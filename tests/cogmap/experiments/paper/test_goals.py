@@ -1,3 +1,5 @@
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 
@@ -36,8 +38,8 @@ def test_goals_lie_where_the_body_can_go() -> None:
     assert 0 < len(goal_grid(Arena.load("pillar"))) <= 12
 
 
-def test_rings_at_goals_are_place_cells() -> None:
-    result = run_experiment("goals", views=3000, camera=Camera.panoramic(90, 15))
+def test_rings_at_goals_are_place_cells(tmp_path: Path) -> None:
+    result = run_experiment("goals", tmp_path / "out", views=3000, camera=Camera.panoramic(90, 15))
     metrics = result.metrics
     assert metrics["goals"] == 12
     assert metrics["ring_betti"] == [1, 1]
@@ -45,6 +47,8 @@ def test_rings_at_goals_are_place_cells() -> None:
     assert metrics["in_field_direction_vector"] < 0.1
     assert metrics["ring_spread_m"] < 0.05
     assert set(result.tables["views"]["ring"]) == set(range(12))
+    assert {file.stem for file in (tmp_path / "out").glob("*.png")} == result.figures.keys()
+    assert metrics["heading_cells_passing"] > 0.9
 
 
 def test_the_figure_has_a_stroke_a_view() -> None:

@@ -8,7 +8,7 @@ from cogmap.experiments.paper.view_manifold import ViewManifold, view_manifold
 
 @pytest.fixture(scope="module")
 def spin(few_words: None) -> tuple[ViewManifold, np.ndarray]:  # noqa: ARG001
-    conditions = Conditions(Arena.load("furnished"), 800)
+    conditions = Conditions(Arena.load("furnished"), 500)
     walk = conditions.explore(Rotation(), Camera.perspective(160, 120))
     return view_manifold(walk.views, conditions), walk.require("poses")
 

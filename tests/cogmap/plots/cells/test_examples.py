@@ -27,7 +27,8 @@ def test_firing_cells_are_drawn_map_above_curve(tuning: Tuning) -> None:
         (mesh,) = axes.collections
         drawn = np.ma.filled(mesh.get_array().astype(float), np.nan).reshape(tuning.maps[cell].shape)
         np.testing.assert_allclose(drawn, tuning.maps[cell] / np.nanmax(tuning.maps[cell]))
-        heights = [bar.get_height() for bar in below.patches]
+        (bars,) = below.collections
+        heights = [np.sort(bar.vertices[:4, 1])[2] for bar in bars.get_paths()]
         np.testing.assert_allclose(heights, tuning.curves[cell] / tuning.curves[cell].max())
     assert maps[0].get_xlabel() == "x (m)"
     assert curves[0].get_xlabel() == "heading (°)"
