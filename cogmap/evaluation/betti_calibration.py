@@ -15,7 +15,7 @@ from tqdm import tqdm
 
 from cogmap.evaluation.homology_of_map import seen_and_smelt
 from cogmap.graph import nearest_points
-from cogmap.shape.aliasing import unless_aliased
+from cogmap.shape.agreement import unless_aliased
 from cogmap.shape.homology import Betti, betti
 
 Points = Float[np.ndarray, "points coordinates"]

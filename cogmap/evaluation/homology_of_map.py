@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from cogmap.graph import nearest_points
 from cogmap.map.activity import Activity
-from cogmap.shape.aliasing import unless_aliased
+from cogmap.shape.agreement import unless_aliased, unless_contradicted, unless_lower_is_unresolved
 from cogmap.shape.homology import Betti, betti
 
 SMELL = 0.2
@@ -33,7 +33,9 @@ def homologies(
     Places that look alike are one to sight, and no look at its codes can tell (`betti`). So where `smells`
     are given, log odours as the nose smelt them, what sight and smell tell together (`seen_and_smelt`) is a
     cloud of its own, and numbers are resolved only where they agree with its: those of the view manifold and
-    of the fused map as they are, those of place cells times the circle of headings (Künneth).
+    of the fused map as they are, those of place cells times the circle of headings (Künneth). Its own are
+    resolved where the fused map counts as many: where little is seen codes bulge between near walls, and the
+    fused map, in which nothing does, tells a loop that is none.
 
     References
     ----------
@@ -52,9 +54,12 @@ def homologies(
         name: betti(cloud, landmarks=landmarks, draws=draws, seed=seed) for name, cloud in clouds.items()
     }
     if smells is not None:
+        both = found["seen_and_smelt"]
+        if "fused" in found:
+            both = found["seen_and_smelt"] = unless_contradicted(both, found["fused"], "the fused map")
         for name in found.keys() & {"view_manifold", "fused", "place"}:
-            found[name] = unless_aliased(found[name], found["seen_and_smelt"], turning=name == "place")
-    return found
+            found[name] = unless_aliased(found[name], both, turning=name == "place")
+    return {name: unless_lower_is_unresolved(cloud) for name, cloud in found.items()}
 
 
 def seen_and_smelt(

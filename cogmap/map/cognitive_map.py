@@ -24,7 +24,7 @@ from cogmap.map.activity import Activity
 from cogmap.map.device import checked_device
 from cogmap.map.diagnosis import Diagnosis, Verdict, topology_verdict
 from cogmap.map.storage import read_state, write_state
-from cogmap.shape.aliasing import unless_aliased
+from cogmap.shape.agreement import unless_aliased
 from cogmap.shape.homology import Betti, betti
 from cogmap.threads import in_order, one_thread
 from neurons.angles import mean_angle

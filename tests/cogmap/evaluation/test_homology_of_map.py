@@ -1,34 +1,11 @@
 import numpy as np
 import pytest
 
-from cogmap import Activity, Betti
+from cogmap import Activity
 from cogmap.evaluation import homology_of_map
-from cogmap.evaluation.homology_of_map import SMELL, homologies, seen_and_smelt, unless_aliased
+from cogmap.evaluation.homology_of_map import SMELL, homologies, seen_and_smelt
 from cogmap.graph import nearest_points
-
-
-def betti_of(numbers: tuple[int, ...], reasons: tuple[str, ...] = ("", "", "")) -> Betti:
-    bars = (np.zeros((0, 2)),) * 3
-    return Betti(numbers, bars, (2.0,) * 3, (3,) * 3, 3, (400, 400, 150), 9000, "geodesic", reasons)
-
-
-def test_sight_is_resolved_where_smell_tells_the_same() -> None:
-    alone, joint = betti_of((1, 3, 0), ("", "", "close")), betti_of((1, 1, 0))
-    told = "aliased: sight alone says [1, 3, 0], with smell [1, 1, 0]"
-    assert unless_aliased(alone, joint).reasons == ("", told, "close")
-    assert unless_aliased(joint, joint).resolved == (True,) * 3
-    unsure = unless_aliased(joint, betti_of((1, 1, 0), ("", "it is close", "")))
-    assert unsure.reasons == ("", "with smell it is close", "")
-
-
-@pytest.mark.parametrize(
-    ("place", "resolved"),
-    [((1, 1, 0), (True, True, True)), ((1, 0, 0), (True, False, False)), ((1, 2, 0), (True, False, False))],
-)
-def test_places_are_multiplied_by_the_circle_of_headings(
-    place: tuple[int, ...], resolved: tuple[bool, ...]
-) -> None:
-    assert unless_aliased(betti_of(place), betti_of((1, 2, 1)), turning=True).resolved == resolved
+from tests.cogmap.shape.numbers import betti_of
 
 
 def test_smell_counts_by_its_noise_whatever_the_order() -> None:

@@ -17,7 +17,8 @@ KEYS = {
     "betti_view_manifold", "betti_fused", "betti_place", "betti_heading", "betti_seen_and_smelt",
     "betti_view_manifold_resolved", "betti_fused_resolved", "betti_place_resolved", "betti_heading_resolved",
     "betti_seen_and_smelt_resolved",
-    "seconds", "peak_memory_bytes", "views", "trusted",
+    "seconds", "peak_memory_bytes", "views", "trusted", "reason", "reasons",
+    "heading_trusted", "place_trusted", "metric_map_trusted", "topology_trusted",
 }  # fmt: skip
 
 
@@ -55,12 +56,28 @@ def test_views_stay_on_disk_and_leave_nothing_there(tmp_path: Path, monkeypatch:
 def test_even_a_small_one_learns(result: tuple[Path, dict[str, Any]]) -> None:
     _, metrics = result
     assert metrics["trusted"], metrics["reason"]
+    for answer in ("heading", "place", "metric_map", "topology"):
+        assert metrics[f"{answer}_trusted"] == (not metrics["reasons"][answer])
+    assert metrics["heading_trusted"]
+    assert metrics["place_trusted"]
     assert metrics["heading_resultant"] > 0.98
     assert 1.5 * metrics["position_median_m"] < metrics["nose_position_median_m"]
     assert metrics["heading_cells_passing"] > 0.9
     assert metrics["betti_heading"] == [1, 1, 0]
     assert metrics["betti_heading_resolved"] == [not reason for reason in metrics["betti_reasons"]["heading"]]
     assert metrics["peak_memory_bytes"] > 1e8
+
+
+def test_without_a_compass_it_says_what_can_be_said(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    metrics = demo(Arena.load("open_field"), out, views=60, landmarks=(30, 20))
+    assert not metrics["heading_trusted"]
+    assert "no loop of its charts closes" in metrics["reason"]
+    assert "heading_median_deg" not in metrics
+    assert "betti_heading" not in metrics
+    assert metrics["position_median_m"] > 0
+    without = {"compass", "heading_cells", "metric_map"}
+    assert {file.stem for file in out.glob("*.png")} == set(FIGURES) - without
 
 
 def test_too_few_views_are_refused_and_nothing_is_written(tmp_path: Path) -> None:

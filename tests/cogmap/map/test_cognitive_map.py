@@ -12,11 +12,12 @@ import pytest
 import torch
 
 from arena import Arena, Brownian, Camera, Recording, explore
-from cogmap import Activity, CogmapError, CognitiveMap, UntrustedMapWarning, score
+from cogmap import Activity, Betti, CogmapError, CognitiveMap, UntrustedMapWarning, score
 from cogmap.map.cognitive_map import BATCH
 from neurons.circuit import Circuit
 from neurons.network import Network
 from neurons.stages import STAGES, Batch, StripStage, chosen, joined
+from tests.cogmap.shape.numbers import betti_of
 
 SHARED = 2000
 Grow = Callable[..., CognitiveMap]
@@ -151,6 +152,31 @@ def test_small_map_knows_place_and_heading(walk: Recording, camera: Camera, cmap
     assert found["position_median_m"] < 0.15
 
 
+def test_diagnosis_of_a_map(cmap: CognitiveMap, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = cmap.diagnosis({})
+    assert told.heading.trusted
+    assert told.place.trusted
+    assert told.metric_map.reason == cmap.metric_reason_
+    assert told.topology.trusted
+    clouds: list[np.ndarray] = []
+
+    def counted(cloud: np.ndarray) -> Betti:
+        clouds.append(cloud)
+        return betti_of((1, 1, 0) if len(clouds) > 1 else (1, 2, 0))
+
+    monkeypatch.setattr("cogmap.map.cognitive_map.betti", counted)
+    assert "aliased" in cmap.diagnosis().topology.reason
+    charts = cmap._network.charts
+    for cloud, measured in zip(clouds, (charts.centres, charts.points), strict=True):
+        np.testing.assert_array_equal(cloud, measured)
+    misled = copy.deepcopy(cmap)
+    misled._network.ambiguity = torch.tensor([0.1, 0.0])
+    told = misled.diagnosis({})
+    assert told.heading.trusted
+    assert "several places" in told.place.reason == misled.reason_
+    assert not misled.trusted_
+
+
 def test_saved_and_loaded_map_perceives_the_same_bits(
     walk: Recording, cmap: CognitiveMap, tmp_path: Path
 ) -> None:
@@ -181,6 +207,19 @@ def test_in_the_dark_there_is_place_only(walk: Recording, cmap: CognitiveMap) ->
     ]
     assert 0.3 < agreement[0] < agreement[1]
     assert agreement[1] > 0.5
+
+
+def test_both_senses_at_once_pick_charts_by_smell_too(walk: Recording, cmap: CognitiveMap) -> None:
+    views = walk.views[: BATCH + 44]
+    seen = cmap.perceive(views)
+    both = cmap.perceive(views, odours=np.exp(seen.odour))
+    # smell says what sight has recalled: nothing new
+    turned = np.angle(np.exp(1j * (both.phase - seen.phase)))
+    assert np.median(abs(turned)) < np.deg2rad(1.5)
+    # the first views again, where the last ones are smelt
+    away = cmap.perceive(views[:44], odours=np.exp(seen.odour[BATCH:]))
+    near = np.linalg.norm(away.odour - seen.odour[BATCH:], axis=1)
+    assert np.median(near) < 0.7 * np.median(np.linalg.norm(seen.odour[:44] - seen.odour[BATCH:], axis=1))
 
 
 def test_order_teaches_a_metric_map_and_shuffled_views_do_no_harm(
@@ -241,6 +280,10 @@ def test_an_unfinished_map_says_so(walk: Recording) -> None:
     young = CognitiveMap(charts=300, epoch=1500).partial_fit(walk.views[:500], walk.odours[:500])
     assert not young.trusted_
     assert "'code' stage" in young.reason_
+    told = young.diagnosis()
+    assert {told.heading.reason, told.place.reason, told.metric_map.reason, told.topology.reason} == {
+        young.reason_
+    }
 
 
 def test_bad_input_is_refused(walk: Recording, cmap: CognitiveMap) -> None:
@@ -265,15 +308,17 @@ def test_bad_input_is_refused(walk: Recording, cmap: CognitiveMap) -> None:
         cmap.perceive(np.zeros((2, 60, 360, 3), np.uint8))
     with pytest.raises(CogmapError, match="odorants"):
         cmap.perceive(odours=odours[:, :2])
-    with pytest.raises(CogmapError, match="either"):
+    with pytest.raises(CogmapError, match="or both"):
         cmap.perceive()
+    with pytest.raises(CogmapError, match="400 views but 399 odours"):
+        cmap.perceive(views, odours=odours[:-1])
     with pytest.raises(CogmapError, match="learnt nothing"):
         CognitiveMap().perceive(views)
 
 
 def grown(walk: Recording, *, split: int | None, folder: Path) -> CognitiveMap:
     """Learn epoch after epoch, by two explorers from `split` on in stages whose work can be shared."""
-    cmap = CognitiveMap(charts=400, components=20, epoch=SHARED)
+    cmap = CognitiveMap(charts=400, components=30, epoch=SHARED)
     order = np.random.default_rng(0)
     for stage in STAGES:
         for _ in range(stage.epochs):
