@@ -45,7 +45,7 @@ def unless_contradicted(found: Betti, other: Betti, name: str) -> Betti:
 
 
 def unless_lower_is_unresolved(found: Betti) -> Betti:
-    """Leave unresolved what stands on holes of a lower dimension that are: a void is around a loop or by it."""
+    """Leave unresolved what stands on holes of a lower dimension that are, as voids on loops."""
     reasons: list[str] = []
     for reason in found.reasons:
         lower = next((dimension for dimension, doubt in enumerate(reasons) if doubt), None)

@@ -21,14 +21,23 @@ def test_smell_counts_by_its_noise_whatever_the_order() -> None:
 
 
 @pytest.mark.parametrize(
-    ("joint", "aliased"),
-    [((1, 1, 0), {"fused"}), ((1, 2, 1), {"view_manifold", "place"}), (None, set())],
+    ("fused", "joint", "aliased"),
+    [
+        ((1, 1, 0), (1, 1, 0), set()),
+        ((1, 2, 1), (1, 2, 1), {"view_manifold", "place"}),
+        # what the fused map counts otherwise is not sure of both senses either
+        ((1, 2, 1), (1, 1, 0), {"view_manifold", "fused", "place", "seen_and_smelt"}),
+        ((1, 2, 1), None, set()),
+    ],
 )
 def test_clouds_that_sight_makes_are_judged_by_both_senses(
-    joint: tuple[int, ...] | None, aliased: set[str], monkeypatch: pytest.MonkeyPatch
+    fused: tuple[int, ...],
+    joint: tuple[int, ...] | None,
+    aliased: set[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # In the order of the clouds.
-    told = iter([(1, 1, 0), (1, 2, 1), (1, 0, 0), (1, 1, 0), joint])
+    told = iter([(1, 1, 0), fused, (1, 0, 0), (1, 1, 0), joint])
     monkeypatch.setattr(homology_of_map, "betti", lambda *_, **__: betti_of(next(told)))
     activity = Activity(
         place=np.ones((40, 3)),

@@ -1,6 +1,6 @@
 import pytest
 
-from cogmap.shape.agreement import unless_aliased, unless_contradicted
+from cogmap.shape.agreement import unless_aliased, unless_contradicted, unless_lower_is_unresolved
 from tests.cogmap.shape.numbers import betti_of
 
 
@@ -29,3 +29,10 @@ def test_what_another_cloud_counts_otherwise_is_not_resolved() -> None:
     assert unless_contradicted(bulging, flat, "the fused map").reasons == ("", told, "close")
     assert unless_contradicted(bulging, bulging, "itself").reasons == bulging.reasons
     assert unless_contradicted(betti_of((1, 1, 0)), flat, "itself").resolved == (True,) * 3
+
+
+def test_voids_are_resolved_only_where_loops_are() -> None:
+    found = unless_lower_is_unresolved(betti_of((1, 4, 2), ("", "close", "")))
+    assert found.reasons == ("", "close", "H1 is unresolved")
+    assert unless_lower_is_unresolved(betti_of((1, 4, 2), ("a", "b", "c"))).reasons == ("a", "b", "c")
+    assert unless_lower_is_unresolved(betti_of((1, 4, 2), ("", "", "c"))).reasons == ("", "", "c")
