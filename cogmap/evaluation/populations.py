@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import torch
 from jaxtyping import Float
+from numpy.typing import ArrayLike
 
 from arena import Arena, Disc, Recording
 from cogmap.errors import UntrustedMapWarning
@@ -35,11 +36,11 @@ def grow_map(
     return CognitiveMap(**{**usual, **parameters}).fit(walk.views, walk.odours, progress=progress)
 
 
-def perceive(cmap: CognitiveMap, views: Any) -> Activity:
-    """Let a map look; one that is not to be trusted says so in the metrics, not in a warning."""
+def perceive(cmap: CognitiveMap, views: Any, odours: ArrayLike | None = None) -> Activity:
+    """Let a map look, and smell; one that is not to be trusted says so in the metrics, not in a warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UntrustedMapWarning)
-        return cmap.perceive(views)
+        return cmap.perceive(views, odours=odours)
 
 
 def trust_report(cmap: CognitiveMap) -> dict[str, Any]:

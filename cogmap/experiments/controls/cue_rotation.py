@@ -60,8 +60,8 @@ def cue_rotation(conditions: Conditions) -> Result:
 
     The walls are of the materials of the first four of the room that is given. A place cell follows the walls
     when its map correlates better with the learnt one turned by a quarter than with the learnt one itself. In
-    the light cells fire by sight, in the dark place cells by smell and heading cells not at all; with `faint`
-    smells a sniff in the dark is off by half. `heading_shift_deg` is the median change of the
+    the light cells fire by sight, with `both` senses the smell may contradict it, in the dark place cells fire
+    by smell and heading cells not at all; with `faint` smells a sniff in the dark is off by half. `heading_shift_deg` is the median change of the
     preferred direction, counter-clockwise.
     """
     rooms = square_room(conditions.room, 0), square_room(conditions.room, 1)
@@ -152,11 +152,12 @@ def turn_what_is_seen(conditions: Conditions, rooms: tuple[Arena, Arena], reach:
 
 
 def _by_sense(cmap: CognitiveMap, walk: Recording, *, seed: int) -> dict[str, Activity]:
-    """Let a map look without a nose, smell in the dark, and smell what is faint in the dark."""
+    """Let a map look without a nose, look and smell, smell in the dark, and smell what is faint there."""
     odours = walk.require("odours")
     faint = FAINT.smell(odours.astype(float), walk.times, np.random.default_rng(seed))
     return {
         "light": perceive(cmap, walk.views),
+        "both": perceive(cmap, walk.views, odours),
         "dark": cmap.perceive(odours=odours),
         "faint": cmap.perceive(odours=faint),
     }
