@@ -38,9 +38,10 @@ class Guard:
     confirmed_eigenvalue, confirmed_sign_agreement
         What will do where walking confirms the headings: 2 to 5° off from .998 up; at .994, 90° at one view
         in twenty.
-    confirming_r2
-        Share that a half of the walk foretells of the other and that confirms: .9 to .98 in maps that are
-        right. Below 0 it contradicts them: −.3 to −3 in maps of half a room.
+    confirming_r2, least_r2
+        Share that a half of the walk foretells of the other and that confirms, .9 to .98 in maps that are
+        right; and without which headings are not taken to be right, as they have been seen 12° off below,
+        unless the smell is to blame. Below 0 it contradicts them: −.3 to −3 in maps of half a room.
     most_ambiguous_heading, most_ambiguous_place
         Largest share of charts that fit elsewhere too: .35 to .49 in maps of half a room, .05 to .19 where
         odours come from one line and headings are right but places are not, at most .01 in maps that are
@@ -55,6 +56,7 @@ class Guard:
     confirmed_eigenvalue: float = 0.9975
     confirmed_sign_agreement: float = 0.97
     confirming_r2: float = 0.9
+    least_r2: float = 0.8
     most_ambiguous_heading: float = 0.25
     most_ambiguous_place: float = 0.025
     most_aliased: float = 0.012
@@ -95,6 +97,12 @@ class Guard:
         """Say why headings are not to be trusted, or nothing when they are."""
         if reason := self.poses(told):
             return reason
+        # where a smell means several places displacements are not foretold, whatever the headings are
+        if told.foretold < self.least_r2 and told.ambiguous <= self.most_ambiguous_place:
+            return (
+                f"walking does not confirm its headings: one half of the walk foretells {told.foretold:.2f} "
+                f"of the other, less than {self.least_r2}; show it longer walks, or more odour sources"
+            )
         doubt = self.atlas(told.signs, told.phases)
         confirmed = told.foretold >= self.confirming_r2
         nearly = told.phases >= self.confirmed_eigenvalue and told.signs >= self.confirmed_sign_agreement

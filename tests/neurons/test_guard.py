@@ -37,7 +37,9 @@ def test_atlas(signs: float, phases: float, bounds: dict[str, float], said: str)
         ({}, ""),
         # no walk, no evidence: charts that agree will do
         ({"foretold": math.nan}, ""),
-        ({"foretold": 0.3}, ""),
+        ({"foretold": 0.79}, "does not confirm its headings"),
+        ({"foretold": 0.81}, ""),
+        ({"foretold": 0.5, "ambiguous": 0.1}, ""),
         ({"foretold": -0.1}, "anywhere but ahead"),
         ({"ambiguous": 0.3}, "30% of its charts smell and head"),
         ({"ambiguous": 0.2}, ""),
@@ -73,5 +75,6 @@ def test_place_needs_heading_and_smells_that_mean_one_place() -> None:
 def test_positions_need_poses_that_are_not_taken_for_others() -> None:
     guard = Guard()
     assert guard.poses(told(phases=0.9, signs=0.9)) == ""
+    assert guard.poses(told(foretold=0.5)) == ""
     for figures in ({"foretold": -1.0}, {"ambiguous": 0.4}, {"aliased": 0.1}):
         assert guard.poses(told(**figures)) == guard.heading(told(**figures)) != ""

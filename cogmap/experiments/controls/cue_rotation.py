@@ -60,9 +60,9 @@ def cue_rotation(conditions: Conditions) -> Result:
 
     The walls are of the materials of the first four of the room that is given. A place cell follows the walls
     when its map correlates better with the learnt one turned by a quarter than with the learnt one itself. In
-    the light cells fire by sight, with `both` senses the smell may contradict it, in the dark place cells fire
-    by smell and heading cells not at all; with `faint` smells a sniff in the dark is off by half. `heading_shift_deg` is the median change of the
-    preferred direction, counter-clockwise.
+    the light cells fire by sight; with `both` senses smell may contradict it; in the dark place cells fire by
+    smell and heading cells not at all, and with `faint` smells a sniff there is off by half.
+    `heading_shift_deg` is the median change of the preferred direction, counter-clockwise.
     """
     rooms = square_room(conditions.room, 0), square_room(conditions.room, 1)
     found = turn_what_is_seen(conditions, rooms, PLATFORM)
