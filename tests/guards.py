@@ -1,16 +1,18 @@
 """How far a map stands from the bounds that decide whether it is trusted.
 
-It stands clear of a bound when its figure is farther from it than half of the bound's own distance from 1. It
-is soundly trusted when it stands clear above all, and soundly refused when it stands clear below one.
+It stands clear of a bound when its figure is farther from it than half of the bound's own distance from 1, or
+a quarter where that is far. It is soundly trusted when it stands clear above all, and soundly refused when it
+stands clear below one.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import Any
 
 BOUNDS = {"signs": 0.995, "phases": 0.999, "metric": 0.8}
-CLEAR = 0.5
+CLEAR = {"signs": 0.5, "phases": 0.5, "metric": 0.25}
 
 
 def figures(network: Any) -> dict[str, float]:
@@ -26,9 +28,13 @@ def margin(name: str, figure: float) -> float:
 
 def too_near(network: Any, names: Iterable[str]) -> bool:
     """Whether rounding might carry the verdict of these guards over a bound; NaN is soundly refused."""
-    margins = [margin(name, figure) for name, figure in figures(network).items() if name in names]
-    trusted = all(one >= CLEAR for one in margins)
-    refused = any(not one > -CLEAR for one in margins)
+    asked = {n: figure for n, figure in figures(network).items() if n in names}
+    # charts are judged by themselves where no walk is there to confirm them
+    if len(asked) > 1 and math.isnan(asked.get("metric", 0.0)):
+        del asked["metric"]
+    margins = [margin(n, figure) / CLEAR[n] for n, figure in asked.items()]
+    trusted = all(one >= 1 for one in margins)
+    refused = any(not one > -1 for one in margins)
     return not (trusted or refused)
 
 

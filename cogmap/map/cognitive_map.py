@@ -22,10 +22,8 @@ from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.inputs import check_views, checked_count, log_odours
 from cogmap.map.activity import Activity
 from cogmap.map.device import checked_device
-from cogmap.map.diagnosis import Diagnosis, Verdict, topology_verdict
+from cogmap.map.diagnosis import Counted, Diagnosis, Verdict, topology_verdict
 from cogmap.map.storage import read_state, write_state
-from cogmap.shape.agreement import unless_aliased
-from cogmap.shape.homology import Betti, betti
 from cogmap.threads import in_order, one_thread
 from neurons.angles import mean_angle
 from neurons.errors import NeuronsError
@@ -265,7 +263,7 @@ class CognitiveMap:
         with one_thread(self._device):
             return torch.cat([network.code(strip) for _, strip in self._strips(views)]).cpu().numpy()
 
-    def diagnosis(self, homology: Mapping[str, Betti] | None = None) -> Diagnosis:
+    def diagnosis(self, homology: Mapping[str, Counted] | None = None) -> Diagnosis:
         """Say of heading, place, metric map and topology whether each is to be trusted, and why not.
 
         Parameters
@@ -277,7 +275,12 @@ class CognitiveMap:
         network = self._grown
         topology = Verdict(network.unfinished)
         if topology.trusted:
-            topology = topology_verdict(self._homology_of_charts() if homology is None else homology)
+            if homology is None:
+                # what counts holes is as heavy as all that a map needs otherwise
+                from cogmap.map.topology import homology_of_charts  # noqa: PLC0415
+
+                homology = homology_of_charts(network.charts)
+            topology = topology_verdict(homology)
         return Diagnosis(
             heading=Verdict(network.heading_diagnosis()),
             place=Verdict(network.place_diagnosis()),
@@ -349,11 +352,6 @@ class CognitiveMap:
         except (KeyError, TypeError, RuntimeError) as error:
             raise CogmapError(f"{path} does not hold a whole map: {error}") from None
         return loaded
-
-    def _homology_of_charts(self) -> dict[str, Betti]:
-        charts = self._grown.charts
-        sight, both = (betti(cloud.cpu().numpy()) for cloud in (charts.centres, charts.points))
-        return {"seen": unless_aliased(sight, both), "seen_and_smelt": both}
 
     def _begin(
         self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, charts: int | None = None

@@ -2,8 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import Protocol, runtime_checkable
 
-from cogmap.shape.homology import Betti
+
+@runtime_checkable
+class Counted(Protocol):
+    """Betti numbers with what is not resolved of them, as `cogmap.Betti` has it."""
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why a number is not resolved, by dimension; empty where it is."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +53,7 @@ class Diagnosis:
         return "\n".join(f"{name}: {told.reason or 'trusted'}" for name, told in verdicts.items())
 
 
-def topology_verdict(homology: Mapping[str, Betti]) -> Verdict:
+def topology_verdict(homology: Mapping[str, Counted]) -> Verdict:
     """Trust the Betti numbers of clouds when all of them are resolved; else say which is not, and why."""
     doubts = (
         f"H{dimension} of {name.replace('_', ' ')} is unresolved: {reason}"

@@ -27,7 +27,8 @@ FRESH = 5000
 
 def stood_by(cmap: CognitiveMap) -> dict[str, bool]:
     """Which of heading and place a map says are to be trusted."""
-    return dict.fromkeys(MOST, cmap.trusted_)
+    told = cmap.diagnosis({})
+    return {answer: getattr(told, answer).trusted for answer in MOST}
 
 
 def written(numbers: tuple[int, ...], sure: tuple[bool, ...]) -> str:

@@ -181,8 +181,9 @@ def test_free_space_too_scattered_to_find() -> None:
 
 
 def test_files_that_cannot_be_read(tmp_path: Path) -> None:
-    assert "no room 'atlantis' in the gallery; choose one of blue_wall, furnished" in message(
-        lambda: Arena.load("atlantis")
+    assert (
+        "no room 'atlantis' in the gallery; choose one of blue_wall, cue_cylinder, cue_square, furnished"
+        in message(lambda: Arena.load("atlantis"))
     )
     assert "cannot read" in message(lambda: Arena.load(tmp_path / "missing.toml"))
     (tmp_path / "folder.toml").mkdir()

@@ -40,7 +40,8 @@ def test_a_small_body_reaches_more() -> None:
 def test_only_a_map_that_is_not_trusted_is_left_to_the_metrics(
     monkeypatch: pytest.MonkeyPatch, warning: type[Warning]
 ) -> None:
-    def look(*_: object) -> Activity:
+    def look(*_: object, odours: None) -> Activity:
+        assert odours is None
         warnings.warn("this map is not to be trusted", warning, stacklevel=1)
         return Activity(
             *(np.zeros((1, 2), np.float32) for _ in range(2)),

@@ -39,7 +39,9 @@ def test_a_newborn_learns_the_same_weights_again(cmap: CognitiveMap, walk: Recor
 def excited(cmap: CognitiveMap, walk: Recording) -> ChartActivity:
     layers = cmap._network
     with torch.no_grad():
-        return layers.readout.excite(layers.charts, torch.from_numpy(cmap.encode(walk.views)))
+        codes = torch.from_numpy(cmap.encode(walk.views))
+        # as the charts have voted
+        return layers.readout(layers.charts, codes, layers.readout.excite(layers.charts, codes)).excited
 
 
 @pytest.mark.parametrize("cells", ["place", "heading"])

@@ -29,7 +29,7 @@ def test_cells_follow_the_card_in_the_light_and_smells_in_the_dark() -> None:
     assert found["dark"]["place_follows_card"] < 0.05
     assert "heading_shift_deg" not in found["dark"]
     assert found["dark"]["correlation_smells"] > found["faint"]["correlation_smells"] + 0.1
-    assert set(result.tables["place_cells"]["sensed"]) == {"light", "dark", "faint"}
+    assert set(result.tables["place_cells"]["sensed"]) == {"light", "both", "dark", "faint"}
     assert result.figures.keys() == result.captions.keys() == {"follows", "examples_cue_cylinder"}
 
 
