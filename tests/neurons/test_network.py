@@ -1,15 +1,19 @@
+from dataclasses import replace
+from typing import Any
+
 import pytest
 import torch
 
+from neurons.atlas.ambiguity import far_share, poses_told
+from neurons.atlas.atlas import Atlas
 from neurons.circuit import Circuit
 from neurons.network import Network
-from neurons.stages import STAGES, OlfactionStage
+from neurons.stages import STAGES, OlfactionStage, Stage
 
 EPOCH = 400
 
 
-@pytest.fixture
-def network() -> Network:
+def newborn(stages: tuple[Stage[Any], ...] = STAGES) -> Network:
     return Network(
         30,
         3,
@@ -19,8 +23,14 @@ def network() -> Network:
         place_cells=10,
         heading_cells=6,
         epoch=EPOCH,
+        stages=stages,
         generator=torch.Generator().manual_seed(0),
     )
+
+
+@pytest.fixture
+def network() -> Network:
+    return newborn()
 
 
 def stream(count: int, seed: int) -> tuple[torch.Tensor, torch.Tensor]:
@@ -118,3 +128,32 @@ def test_charts_are_added_while_they_do_not_agree(
     assert len(network.charts) == charts
     assert network.heading_diagnosis() == ""
     assert {len(network.place.afferents.weights), len(network.heading.afferents.weights)} == {charts}
+
+
+def grown(stages: tuple[Stage[Any], ...], until: str) -> Network:
+    found = newborn(stages)
+    while found.stage.name != until:
+        found.learn(*stream(50, int(found.views_seen)))
+    found.advance_stage()
+    return found
+
+
+def test_a_connection_is_learnt_where_charts_do_not_agree() -> None:
+    bare = [replace(each, connection=None) if isinstance(each, OlfactionStage) else each for each in STAGES]
+    learnt, plain = (grown(stages, "cells") for stages in (STAGES, tuple(bare)))
+    assert plain.atlas_diagnosis()
+    assert not plain.connected
+    assert learnt.connected
+    assert learnt.agreement[1] > plain.agreement[1]
+    assert learnt.agreement[0] == plain.agreement[0]
+    assert not torch.equal(learnt.readout.turning, plain.readout.turning)
+
+
+def test_ambiguity_is_told_when_places_are_known() -> None:
+    assert grown(STAGES, "corrected_metric_map").ambiguity.isnan().all()
+    found = grown(STAGES, "afferents")
+    smells, edges = found.readout.intercepts, Atlas.of(found.charts.points).edges
+    heading = found.readout.phases + found.metric_map(found.place, smells).offset
+    told = (poses_told(smells, heading, edges), found.charts.centres)
+    assert found.ambiguity.isfinite().all()
+    assert found.ambiguity.tolist() == pytest.approx([far_share(each, edges) for each in told])

@@ -6,7 +6,7 @@ import torch
 from sklearn.linear_model import Ridge
 from torch import Tensor
 
-from neurons.atlas.metric_map import MetricMap, _patches
+from neurons.atlas.metric_map import MetricMap, _Evidence, _patches
 from neurons.layers.place_cells import PlaceCells
 
 SOURCES = torch.tensor([[-0.2, -0.1], [1.2, 0.1], [0.4, 1.3]])
@@ -221,3 +221,22 @@ def test_how_much_must_be_foretold_is_a_setting(cells: PlaceCells, walked: Walk)
 def test_without_a_compass_there_is_nothing_to_learn(cells: PlaceCells, walked: Walk) -> None:
     blind = walked._replace(heading=torch.full_like(walked.heading, torch.nan))
     assert_left_out(learn(cells, blind), cells, walked.odour, "0 of 6000 views")
+
+
+def test_offsets_converge_behind_a_door_too() -> None:
+    # two rooms of ten cells, whose compasses differ by 40°; few ways lead through the door
+    cells, door = 20, 0.01
+    ahead = torch.zeros(cells, cells)
+    ahead[:10, :10], ahead[10:, 10:] = 1.0, 1.0
+    ahead[9, 10] = ahead[10, 9] = door
+    turned = torch.polar(torch.ones(cells), torch.tensor([0.0, 0.7]).repeat_interleave(10))
+    evidence = _Evidence(
+        torch.eye(cells, dtype=torch.double),
+        (turned[:, None] * ahead.sqrt() * turned.conj()).to(torch.cdouble),
+        torch.zeros(cells, cells, dtype=torch.double),
+        1.0,
+        1.0,
+    )
+    _, turns = evidence.solve(1e-9)
+    across = (turns[10:].mean() / turns[:10].mean()).angle().item()
+    assert across == pytest.approx(0.7, abs=0.01)
