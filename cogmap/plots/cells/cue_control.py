@@ -15,7 +15,7 @@ def plot_cue_control(place: pd.DataFrame, heading: pd.DataFrame) -> Figure:
 
     A dot is a place cell: blue above the dashed line, where its map is more like the first one turned with
     what is seen, red below it, where it is more like the first one as it was. On the right is how many
-    head-direction cells have turned by how much when they are led by sight.
+    head-direction cells have turned by how much: blue by what is sensed first in the table, red by the next.
 
     Parameters
     ----------
@@ -53,9 +53,12 @@ def plot_cue_control(place: pd.DataFrame, heading: pd.DataFrame) -> Figure:
             axes.set_aspect("equal")
         axes = line[-1]
         mine = heading[(heading["arena"] == room) & heading["shift_deg"].notna()]
-        title = f"heading cells: {mine['shift_deg'].median():.0f}°" if len(mine) else "no heading cells fire"
+        shifts = {sensed: cells["shift_deg"] for sensed, cells in mine.groupby("sensed", sort=False)}
+        told = ", ".join(f"{sensed} {shift.median():.0f}°" for sensed, shift in shifts.items())
+        title = f"heading cells: {told}" if shifts else "no heading cells fire"
         tidy(axes, x="turned by (°)", y="cells", title=title, size=SMALL)
         axes.axvspan(45, 135, color=ABSENT, alpha=0.5, linewidth=0)
-        axes.hist(mine["shift_deg"], bins=np.arange(-180, 181, 10), color=GOOD)
+        for shift, colour in zip(shifts.values(), (GOOD, BAD, SOFT), strict=False):
+            axes.hist(shift, bins=np.arange(-180, 181, 10), color=colour, alpha=0.6)
         axes.set(xlim=(-180, 180), xticks=QUARTERS)
     return figure
