@@ -149,6 +149,16 @@ def test_a_connection_is_learnt_where_charts_do_not_agree() -> None:
     assert not torch.equal(learnt.readout.turning, plain.readout.turning)
 
 
+def test_charts_lie_apart_as_they_compete_and_the_metric_map_begins_again() -> None:
+    told = grown(STAGES, "olfaction")
+    assert told.charts.smells.any()
+    assert torch.equal(told.readout.spacing, Atlas.of(told.charts.points).spacing)
+    again = grown(STAGES, "corrected_metric_map").metric_map
+    assert not any(
+        sums.any() for sums in (again.spread, again.ahead, again.shared, again.counted, again.seen)
+    )
+
+
 def test_ambiguity_is_told_when_places_are_known() -> None:
     assert grown(STAGES, "corrected_metric_map").ambiguity.isnan().all()
     found = grown(STAGES, "afferents")

@@ -54,6 +54,15 @@ def test_clouds_that_sight_makes_are_judged_by_both_senses(
     assert {name for name, cloud in found.items() if not all(cloud.resolved)} == aliased
 
 
+def test_voids_of_a_map_are_resolved_only_where_its_loops_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(homology_of_map, "betti", lambda *_, **__: betti_of((1, 1, 0), ("", "close", "")))
+    blind = np.full(40, np.nan)
+    activity = Activity(np.ones((40, 3)), np.ones((40, 3)), blind, np.ones((40, 2)), np.ones((40, 2)))
+    found = homologies(np.ones((40, 2)), activity)
+    assert "fused" not in found
+    assert {cloud.resolved for cloud in found.values()} == {(True, False, False)}
+
+
 def test_ideal_populations_have_the_shape_of_what_they_code() -> None:
     rng = np.random.default_rng(0)
     xy, heading = rng.uniform(-1, 1, (3000, 2)), rng.uniform(-np.pi, np.pi, 3000)

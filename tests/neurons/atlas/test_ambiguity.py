@@ -36,6 +36,17 @@ def test_smells_that_mean_several_places(
     assert far_share(poses_told(smell(pose[:, :2]), pose[:, 2], edges), edges, far=3) > least
 
 
+def test_smell_and_heading_count_in_units_of_their_change_across_an_overlap(
+    tiling: tuple[Tensor, Charts], edges: Tensor
+) -> None:
+    pose, _ = tiling
+    k, j = edges.T
+    told = poses_told(7 * pose[:, :2], pose[:, 2], edges)
+    apart = (told[k] - told[j])[:, :2].norm(dim=1).median()
+    turned = (told[k] - told[j])[:, 2:].norm(dim=1).median()
+    torch.testing.assert_close(torch.stack([apart, turned]), torch.ones(2), atol=1e-3, rtol=1e-3)
+
+
 def test_headings_that_are_made_up(tiling: tuple[Tensor, Charts], edges: Tensor) -> None:
     pose, _ = tiling
     # half a room, mapped as if it were all: the two poses of each view smell of their own place

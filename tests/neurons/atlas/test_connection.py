@@ -1,4 +1,5 @@
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -60,6 +61,20 @@ def test_walking_that_turns_the_compass_is_learnt(
     assert sideways[0] < 0.5 * sideways[1]
     assert (found.scale, found.sign_agreement) == (plain.scale, plain.sign_agreement)
     assert plain.walking is None
+
+
+def test_overlaps_that_are_wrong_count_less(swirl: Swirl, found: Compass) -> None:
+    # one overlap in fifty joins charts that only look alike
+    rng = torch.Generator().manual_seed(5)
+    count = len(swirl.centres)
+    wrong = torch.randint(count, (len(swirl.atlas.edges) // 50, 2), generator=rng).sort(dim=1).values
+    wrong = wrong[wrong[:, 0] < wrong[:, 1]]
+    atlas = replace(swirl.atlas, edges=torch.cat([swirl.atlas.edges, wrong]))
+    misled = LearntConnection(rounds=4).refine(*swirl[:4], atlas)
+    assert found.walking is not None
+    assert misled.walking is not None
+    off = (misled.walking - found.walking).norm() / found.walking.norm()
+    assert off < 0.25, off
 
 
 def test_agreement_is_told_of_all_overlaps_alike(swirl: Swirl, found: Compass) -> None:

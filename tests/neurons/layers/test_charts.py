@@ -210,6 +210,14 @@ def test_joint_distance_weighs_smell_by_the_usual_misfits(views: Tensor) -> None
     np.testing.assert_allclose(squared, distance**2, rtol=1e-3)
 
 
+def test_a_chart_smells_of_the_mean_of_what_it_wins(views: Tensor) -> None:
+    layer, odours = blank(1, smell=0.5), torch.randn(201, 2, generator=torch.Generator().manual_seed(4))
+    layer.partial_fit(views[:201], odours, winners=1, window=1e9)
+    # the first view is born as the chart, and counts no more once others are won
+    torch.testing.assert_close(layer.smells[0], odours[1:].mean(dim=0), atol=1e-5, rtol=1e-4)
+    torch.testing.assert_close(layer.centres[0], views[1:201].mean(dim=0), atol=1e-4, rtol=1e-4)
+
+
 def test_no_more_winners_than_charts(views: Tensor) -> None:
     grown = blank(3)
     grown.partial_fit(views[:3], smells(views[:3]), winners=12, window=100.0)
