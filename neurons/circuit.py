@@ -6,7 +6,7 @@ from torch import Tensor, nn
 
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.metric_map import MetricMap
-from neurons.guard import Agreement, Guard
+from neurons.guard import Guard
 from neurons.layers.afferents import Afferents
 from neurons.layers.charts import Charts
 from neurons.layers.heading_cells import HeadDirectionCells
@@ -78,14 +78,6 @@ class Circuit(nn.Module):
         """Say in what the charts do not agree, or nothing when they do."""
         signs, phases = self.agreement.tolist()
         return self.guard.atlas(signs, phases)
-
-    @property
-    def told(self) -> Agreement:
-        """What the guard judges by."""
-        signs, phases = self.agreement.tolist()
-        foretold = float(self.metric_map.cross_validated_r2.min())
-        ambiguous, aliased = self.ambiguity.tolist()
-        return Agreement(signs, phases, bool(self.connected), foretold, ambiguous, aliased)
 
     def add_charts(self) -> None:
         """Double the charts where they lie farthest apart; what stands on them is as before any view."""

@@ -20,6 +20,8 @@ class Agreement(NamedTuple):
     """Share of the charts most alike in smell and heading that are far apart (`neurons.atlas.ambiguity`)."""
     aliased: float
     """The same of the charts most alike to sight."""
+    views_per_chart: float
+    """Of an epoch."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,9 @@ class Guard:
     most_aliased
         Largest share of charts that look like others far away: .03 to .35 in maps of which one view in twenty
         or more is told 90° off or from the other end of the room, at most .004 in maps that are right.
+    most_views_per_chart
+        With more, a map that takes poses for others is advised to use more charts before anything is changed
+        in the room: as coarse a tiling joins places that do not look alike.
     """
 
     least_eigenvalue: float = 0.999
@@ -60,6 +65,7 @@ class Guard:
     most_ambiguous_heading: float = 0.25
     most_ambiguous_place: float = 0.025
     most_aliased: float = 0.012
+    most_views_per_chart: float = 12.0
 
     def atlas(self, signs: float, phases: float) -> str:
         """Say in what the charts do not agree, or nothing when they do."""
@@ -79,17 +85,19 @@ class Guard:
         if told.foretold < 0:
             return (
                 "what follows a view lies anywhere but ahead of it: poses that look and smell alike are one "
-                "to it; set a landmark or an odour where they differ"
+                f"to it; {self._mend(told, 'set a landmark or an odour where they differ')}"
             )
         if told.ambiguous > self.most_ambiguous_heading:
             return (
                 f"{told.ambiguous:.0%} of its charts smell and head like others far away: poses that look "
-                "and smell alike are one to it; set a landmark or an odour where they differ"
+                "and smell alike are one to it; "
+                f"{self._mend(told, 'set a landmark or an odour where they differ')}"
             )
         if told.aliased > self.most_aliased:
             return (
                 f"{told.aliased:.1%} of its charts look like others far away, which sight alone does not "
-                "tell apart; set a landmark where they differ, or perceive with odours too"
+                "tell apart; "
+                f"{self._mend(told, 'set a landmark where they differ, or perceive with odours too')}"
             )
         return ""
 
@@ -126,3 +134,6 @@ class Guard:
                 "several places; use more odour sources, not all on one line"
             )
         return ""
+
+    def _mend(self, told: Agreement, otherwise: str) -> str:
+        return "use more charts" if told.views_per_chart > self.most_views_per_chart else otherwise

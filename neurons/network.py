@@ -8,6 +8,7 @@ from jaxtyping import Float
 from torch import Tensor, nn
 
 from neurons.circuit import Circuit
+from neurons.guard import Agreement
 from neurons.stages import STAGES, Batch, Stage
 
 
@@ -103,6 +104,16 @@ class Network(Circuit):
         for stage in self.stages:
             for name in stage.recent:
                 self.get_buffer(name).fill_(torch.nan)
+
+    @property
+    def told(self) -> Agreement:
+        """What the guard judges by."""
+        signs, phases = self.agreement.tolist()
+        foretold = float(self.metric_map.cross_validated_r2.min())
+        ambiguous, aliased = self.ambiguity.tolist()
+        views_per_chart = self.epoch / len(self.charts)
+        connected = bool(self.connected)
+        return Agreement(signs, phases, connected, foretold, ambiguous, aliased, views_per_chart)
 
     def heading_diagnosis(self) -> str:
         """Say why headings cannot be trusted, or nothing when they can."""

@@ -54,6 +54,7 @@ class EvenMemory:
 
     def __init__(self, size: int = 4000) -> None:
         self.size = size
+        self._kept = 0
 
     def partial_fit(
         self,
@@ -127,22 +128,23 @@ class EvenMemory:
     @property
     def views_(self) -> Shaped[np.ndarray, "kept *shape"]:
         """The views that are kept."""
-        return self._views[: len(self)]
+        return self._state["views"][: len(self)]
 
     @property
     def codes_(self) -> Float[np.ndarray, "kept components"]:
         """What they are compared by."""
-        return self._codes[: len(self)]
+        return self._state["codes"][: len(self)]
 
     @property
     def indices_(self) -> Int[np.ndarray, "kept"]:
         """Their places in the stream."""
-        return self._indices[: len(self)]
+        return self._state["indices"][: len(self)]
 
     @property
     def spacing_(self) -> float:
         """Distance beyond which a view is new."""
-        return float(self._nearest.min()) if len(self) == len(self._nearest) else 0.0
+        nearest = self._state["nearest"]
+        return float(nearest.min()) if len(self) == len(nearest) else 0.0
 
     @property
     def _state(self) -> dict[str, np.ndarray]:

@@ -5,7 +5,9 @@ import pytest
 
 from neurons.guard import Agreement, Guard
 
-SOUND = Agreement(signs=1.0, phases=0.9999, connected=False, foretold=0.97, ambiguous=0.0, aliased=0.0)
+SOUND = Agreement(
+    signs=1.0, phases=0.9999, connected=False, foretold=0.97, ambiguous=0.0, aliased=0.0, views_per_chart=5.7
+)
 
 
 def told(**figures: Any) -> Agreement:
@@ -78,3 +80,12 @@ def test_positions_need_poses_that_are_not_taken_for_others() -> None:
     assert guard.poses(told(foretold=0.5)) == ""
     for figures in ({"foretold": -1.0}, {"ambiguous": 0.4}, {"aliased": 0.1}):
         assert guard.poses(told(**figures)) == guard.heading(told(**figures)) != ""
+
+
+@pytest.mark.parametrize("figures", [{"foretold": -1.0}, {"ambiguous": 0.4}, {"aliased": 0.1}])
+def test_advice_is_charts_only_where_they_are_few(figures: dict[str, Any]) -> None:
+    guard = Guard()
+    assert "landmark" in guard.poses(told(**figures))
+    assert "charts; " not in guard.poses(told(**figures))
+    coarse = guard.poses(told(**figures, views_per_chart=34.0))
+    assert coarse.endswith("; use more charts")

@@ -68,6 +68,18 @@ def test_each_layer_learns_in_its_own_period_and_is_then_fixed(network: Network)
         assert all(name.startswith(own[stage.name]) for name in changed - {"views_seen"})
 
 
+def test_the_guard_is_told_what_the_network_knows(network: Network) -> None:
+    assert [name for name, figure in network.told._asdict().items() if figure == figure] == [  # noqa: PLR0124
+        "connected",
+        "views_per_chart",
+    ]
+    network.agreement = torch.tensor([0.9, 0.8])
+    network.connected.logical_not_()
+    network.metric_map.cross_validated_r2 = torch.tensor([0.7, 0.6])
+    network.ambiguity = torch.tensor([0.5, 0.4])
+    assert network.told == pytest.approx((0.9, 0.8, True, 0.6, 0.5, 0.4, EPOCH / 60))
+
+
 def test_an_unfinished_network_is_not_to_be_trusted(network: Network) -> None:
     network.agreement = torch.tensor([1.0, 0.9999])
     answers = ("heading", "place", "metric", "position")

@@ -100,6 +100,10 @@ def test_bad_input_gets_one_sentence(tmp_path: Path) -> None:
         memory.partial_fit(np.zeros((4, 3), np.float32))
     with pytest.raises(CogmapError, match="seen nothing"):
         EvenMemory().save(tmp_path / "memory")
+    assert len(EvenMemory()) == 0
+    for told in ("views_", "codes_", "indices_", "spacing_"):
+        with pytest.raises(CogmapError, match="seen nothing"):
+            getattr(EvenMemory(), told)
     with pytest.raises(CogmapError, match="cannot read a memory"):
         EvenMemory.load(tmp_path / "memory")
     memory.save(tmp_path / "memory")
