@@ -32,6 +32,15 @@ def test_ideal_grids_have_their_spacing_and_orientation(
     assert np.abs(np.angle(np.exp(6j * (found.orientation - turns)))).max() / 6 < np.deg2rad(1.5)
 
 
+def test_a_rim_of_the_central_peak_is_no_ring() -> None:
+    y, x = np.mgrid[-30:31, -30:31]
+    radius, direction = np.hypot(y, x), np.arctan2(y, x)
+    # six-fold next to the peak and square from twice its radius on
+    rim = np.where(radius < 7, 0.1 * np.cos(6 * direction), np.cos(4 * direction))
+    (score,) = gridness(np.where(radius < 5, 1 - radius / 5, rim)[None])
+    assert score < -1
+
+
 def test_what_is_not_hexagonal_scores_low(positions: np.ndarray) -> None:
     waves = 2 * np.pi / 0.8 * positions
     far = np.hypot(*positions.T)
