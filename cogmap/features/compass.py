@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 from scipy.sparse.linalg import cg
 
 from arena.angles import wrap_angle
-from cogmap.features.strips import FREQUENCIES, Strips
+from cogmap.features.strips import FREQUENCIES
 from cogmap.graph.neighbour_graph import edge_differences
 
 COLUMNS = 2 * (FREQUENCIES - 1)
@@ -21,8 +21,12 @@ OUTLIER = 0.03
 _f = np.arange(FREQUENCIES, dtype=np.float32)
 
 
+Series = Complex64[np.ndarray, "views rows frequencies"]
+"""Fourier series of the brightness of panoramas, `strips(views).grey`."""
+
+
 def turns(
-    strips: Strips, pairs: Int[np.ndarray, "pairs 2"], others: Strips | None = None
+    grey: Series, pairs: Int[np.ndarray, "pairs 2"], others: Series | None = None
 ) -> Float[np.ndarray, "pairs"]:
     r"""Give the heading of the first view of each pair minus that of the second, rad.
 
@@ -38,12 +42,12 @@ def turns(
 
     Parameters
     ----------
-    strips, pairs, others
-        The first of a pair is a row of `strips`, the second one of `others`, or of `strips` when None.
+    grey, pairs, others
+        The first of a pair is a row of `grey`, the second one of `others`, or of `grey` when None.
     """
-    seconds = strips if others is None else others
+    seconds = grey if others is None else others
     found = [
-        _turns(strips.grey[block[:, 0]], seconds.grey[block[:, 1]])
+        _turns(grey[block[:, 0]], seconds[block[:, 1]])
         for block in np.split(pairs, range(BLOCK, len(pairs), BLOCK))
     ]
     return np.concatenate(found)

@@ -1,5 +1,7 @@
 """Activity of a cognitive map: what it says of views."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +24,9 @@ class Activity:
     position
         In the map's own metric frame, a similarity (with a mirror where `phase` has one) away from metres.
         NaN when the walk has taught no metric map.
+    plain
+        The same as the charts alone tell it, where `CognitiveMap.refine` has made `phase` and `position`
+        finer; else None.
     """
 
     place: Float[np.ndarray, "views place_cells"]
@@ -29,6 +34,7 @@ class Activity:
     phase: Float[np.ndarray, "views"]
     odour: Float[np.ndarray, "views odorants"]
     position: Float[np.ndarray, "views 2"]
+    plain: Activity | None = None
 
     def __len__(self) -> int:
         return len(self.phase)
