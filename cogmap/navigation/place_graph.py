@@ -105,16 +105,19 @@ class PlaceGraph:
         return np.asarray(self.position.min(axis=0) - 3 * self.spacing)
 
     @cached_property
-    def _free(self) -> Bool[np.ndarray, "x y"]:
+    def _clearance(self) -> Float[np.ndarray, "x y"]:
+        """Distance of each cell from what is not free, 0 where it is not."""
         shape = np.ceil((self.position.max(axis=0) + 3 * self.spacing - self._corner) / self._cell)
         axes = [np.arange(int(count)) + 0.5 for count in shape]
         middles = self._corner + self._cell * np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
         distances = KDTree(self.position).query(middles, distance_upper_bound=self.spacing)[0]
-        return np.asarray(np.isfinite(distances))
+        # closing: what the discs around the views cover, less a rim as wide as they are
+        covered = distance_transform_edt(np.isfinite(distances)) * self._cell
+        return np.maximum(covered - self.spacing, 0)
 
     @cached_property
-    def _clearance(self) -> Float[np.ndarray, "x y"]:
-        return np.asarray(self._cell * distance_transform_edt(self._free))
+    def _free(self) -> Bool[np.ndarray, "x y"]:
+        return self._clearance > 0
 
     @cached_property
     def _names(self) -> Int[np.ndarray, "x y"]:
