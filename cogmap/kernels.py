@@ -4,4 +4,4 @@ from pathlib import Path
 
 from arena.kernels import cache_folder, kernels_cached_in
 
-kernel = kernels_cached_in(cache_folder(Path(__file__).parent, "graph"))
+kernel = kernels_cached_in(cache_folder(Path(__file__).parent, "graph", "imagination"))

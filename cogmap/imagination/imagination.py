@@ -1,0 +1,263 @@
+"""Imagination: what a map expects to see from anywhere that it remembers places around."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import KW_ONLY, dataclass
+from functools import cached_property
+from typing import Any, Literal, Protocol, get_args
+
+import numpy as np
+from jaxtyping import Float, Float32, UInt8
+from numpy.typing import ArrayLike
+
+from cogmap.errors import CogmapError
+from cogmap.imagination.places import RememberedPlaces, Sources
+from cogmap.imagination.stroll import stroll
+from cogmap.imagination.turning import Painted, blended, columns_turned, turning_sense
+from cogmap.imagination.warp import warped
+from cogmap.inputs import check_array, check_choice, check_views, checked_count
+from cogmap.map.cognitive_map import CognitiveMap
+from cogmap.map.even_memory import EvenMemory
+from cogmap.navigation.place_graph import PlaceGraph
+from cogmap.threads import in_order, one_thread
+
+Method = Literal["turned", "blend", "warp"]
+"""How a view is made.
+
+"turned"
+    of the nearest place, turned;
+"blend"
+    the affine mixture of the places around, turned;
+"warp"
+    optical flow carries what these show to where it is seen from the target (`warp.warped`).
+"""
+STRAIGHT = 0.2
+"""Turn between views (rad) up to which a body counts as going straight on."""
+
+
+class Motor(Protocol):
+    """What foretells motion from commands, as a `MotorModel` does."""
+
+    def predict(
+        self,
+        commands: Float[np.ndarray, "decisions 2"],
+        previous: Float[np.ndarray, "decisions 2"] | None = None,
+    ) -> Float[np.ndarray, "decisions 3"]:
+        """Give how far the body gets forward and to the left, in the unit of the map, and turns, rad."""
+
+
+@dataclass(frozen=True)
+class Dream:
+    """Imagined views, where they are imagined from, and how far to trust them."""
+
+    views: UInt8[np.ndarray, "targets height width 3"]
+    position: Float[np.ndarray, "targets 2"]
+    """In the unit of the map."""
+    phase: Float[np.ndarray, "targets"]
+    """Heading in the frame of the map, rad."""
+    spread: Float32[np.ndarray, "targets"]
+    """Root mean square over pixels of how far the sources differ, grey levels."""
+    distance: Float[np.ndarray, "targets"]
+    """To the nearest remembered place, in the unit of the map."""
+
+    def __len__(self) -> int:
+        return len(self.views)
+
+
+@dataclass(eq=False)
+class Imagination:
+    """Imagines views, from a map and what its animal remembers having seen.
+
+    Remembered panoramas have the places and headings that the map perceives; whatever is imagined is imagined
+    in the map's frame and unit. No pose enters. Of the places around a target each is turned to the heading
+    that is asked for, and optical flow between them carries what they show to the target (`at`).
+
+    Parameters
+    ----------
+    cmap
+        A map with a compass and a metric map; refined (`CognitiveMap.refine`) it imagines far better.
+    memory
+        Panoramas that are remembered, (views, height, width, 3), which may lie on disk, or an `EvenMemory` of
+        such. 17,000 of 360×60 pixels are 1.1 GB; fewer are farther apart, and dreams of them coarser.
+    sources
+        Places that a view is made of.
+
+    Raises
+    ------
+    CogmapError
+        At first use: for a memory of another camera, a map without compass or metric map, and views whose
+        columns do not shift when the body turns.
+    """
+
+    cmap: CognitiveMap
+    _: KW_ONLY
+    memory: Any
+    sources: int = 5
+
+    def at(self, position: ArrayLike, heading: ArrayLike, *, method: Method = "warp") -> Dream:
+        """Imagine the views from places, (targets, 2) or (2,), in directions, (targets,) or one for all.
+
+        Raises
+        ------
+        CogmapError
+            For targets that are not finite or do not fit each other, and an unknown method.
+        """
+        check_choice("method", method, get_args(Method))
+        where = np.atleast_2d(np.asarray(position, np.float64))
+        check_array("position", where, (None, 2))
+        phase = np.asarray(heading, np.float64)
+        if phase.ndim > 1 or phase.size not in {1, len(where)}:
+            raise CogmapError(f"heading has shape {phase.shape}; give one for each of {len(where)} places")
+        phase = np.broadcast_to(phase.reshape(-1), len(where)).copy()
+        check_array("heading", phase, (len(where),))
+        count = 1 if method == "turned" else checked_count("sources", self.sources)
+        sources = self.places.sources(where, count)
+        found = list(self.paint(sources, phase, method=method))
+        return Dream(
+            views=np.stack([as_pixels(each.view) for each in found]),
+            position=where,
+            phase=phase,
+            spread=np.array([np.sqrt(np.square(each.spread).mean()) for each in found], np.float32),
+            distance=sources.distances[:, 0],
+        )
+
+    def along(self, route: Float[np.ndarray, "points 2"], *, step: float | None = None) -> Dream:
+        """Imagine what is seen on the way along a route, facing where it leads, view by view.
+
+        Parameters
+        ----------
+        route
+            Its corners, in the unit of the map.
+        step
+            Distance from view to view; a quarter of the pace of the remembered walk when None.
+        """
+        check_array("route", route, (None, 2))
+        return self._walked(route, step, None, None)
+
+    def film(
+        self, view_a: UInt8[np.ndarray, "height width 3"], view_b: UInt8[np.ndarray, "height width 3"]
+    ) -> Dream:
+        """Imagine the way from one view to another, round whatever it has learnt to go round.
+
+        Raises
+        ------
+        CogmapError
+            For views that show nothing or are of a place that is not remembered, and when no way is known.
+        """
+        views = np.stack([view_a, view_b])
+        position, phase = self.perceive(views)
+        route = self.ways.plan(position[0], position[1])
+        return self._walked(route, None, float(phase[0]), float(phase[1]))
+
+    def ahead(
+        self,
+        views: Any,
+        motor: Motor | None = None,
+        commands: Float[np.ndarray, "views 2"] | None = None,
+    ) -> Dream:
+        """Expect what is seen next after each of some views.
+
+        Parameters
+        ----------
+        views
+            What is seen now.
+        motor, commands
+            What foretells the motion that commands, one for each view, bring about. Without, the body is
+            taken to go straight on, as far as it usually got from view to view of the remembered walk.
+        """
+        position, phase = self.perceive(views)
+        if (motor is None) != (commands is None):
+            raise CogmapError("give a motor model and commands for each view, or neither")
+        if motor is None or commands is None:
+            motion = np.broadcast_to([self.pace, 0.0, 0.0], (len(phase), 3))
+        else:
+            motion = np.asarray(motor.predict(commands), np.float64)
+            check_array("predicted motion", motion, (len(phase), 3))
+        moved = (motion[:, 0] + 1j * motion[:, 1]) * np.exp(1j * phase)
+        return self.at(position + np.column_stack([moved.real, moved.imag]), phase + motion[:, 2])
+
+    @cached_property
+    def places(self) -> RememberedPlaces:
+        """What is remembered, where the map perceives it."""
+        views = self.memory.views_ if isinstance(self.memory, EvenMemory) else self.memory
+        check_views(views, self.cmap.view_shape_)
+        position, phase = self._perceived(views)
+        return RememberedPlaces(views, position, phase)
+
+    @cached_property
+    def ways(self) -> PlaceGraph:
+        """What plans ways over the remembered places."""
+        return PlaceGraph(self.places.position)
+
+    @cached_property
+    def sense(self) -> int:
+        """Whether phase grows to the left (1) or to the right (−1), in a mirrored map."""
+        places = self.places
+        return turning_sense(places.views, places.position, places.phase)
+
+    @cached_property
+    def pace(self) -> float:
+        """How far the body got forward from view to view of the remembered walk, where it went straight on."""
+        places = self.places
+        turn = np.angle(np.exp(1j * np.diff(places.phase)))
+        middle = places.phase[:-1] + turn / 2
+        step = np.diff(places.position, axis=0)
+        forward = step[:, 0] * np.cos(middle) + step[:, 1] * np.sin(middle)
+        straight = forward[np.abs(turn) < STRAIGHT]
+        if not len(straight):
+            raise CogmapError("the remembered views are no walk that goes straight on; give a motor model")
+        return float(np.median(straight))
+
+    def perceive(self, views: Any) -> tuple[Float[np.ndarray, "views 2"], Float[np.ndarray, "views"]]:
+        """Tell where the map perceives views, and in which direction.
+
+        Raises
+        ------
+        CogmapError
+            For views of another size, or that are of one colour.
+        """
+        check_views(views, self.cmap.view_shape_)
+        for index, view in enumerate(views):
+            if np.ptp(view.reshape(-1, 3), axis=0).max() == 0:
+                raise CogmapError(f"view {index} is of one colour and shows no place; give another")
+        return self._perceived(views)
+
+    def paint(
+        self, sources: Sources, phase: Float[np.ndarray, "targets"], *, method: Method = "warp"
+    ) -> Iterator[Painted]:
+        """Make views from their sources, one after the other, in threads."""
+        places = self.places
+        turn = self.sense * (phase[:, None] - places.phase[sources.indices])
+        shifts = columns_turned(turn, places.views.shape[2])
+
+        paint = warped if method == "warp" else blended
+
+        def painted(target: int) -> Painted:
+            views = np.stack([places.views[view] for view in sources.indices[target]])
+            return paint(views, shifts[target], sources.affine[target], sources.near[target])
+
+        with one_thread():
+            yield from in_order(painted, range(len(phase)))
+
+    def _perceived(self, views: Any) -> tuple[Float[np.ndarray, "views 2"], Float[np.ndarray, "views"]]:
+        activity = self.cmap.perceive(views)
+        if np.isnan(activity.position).any():
+            raise CogmapError(
+                f"this map tells no positions, so nothing is imagined: {self.cmap.metric_reason_}"
+            )
+        if np.isnan(activity.phase).any():
+            raise CogmapError("this map has no compass, so nothing is imagined; explore more")
+        return activity.position.astype(np.float64), activity.phase.astype(np.float64)
+
+    def _walked(
+        self, route: Float[np.ndarray, "points 2"], step: float | None, start: float | None, end: float | None
+    ) -> Dream:
+        step = self.pace / 4 if step is None else step
+        poses = stroll(route, step=step, turn=0.1, start=start, end=end)
+        return self.at(poses[:, :2], poses[:, 2])
+
+
+def as_pixels(view: Float32[np.ndarray, "*shape"]) -> UInt8[np.ndarray, "*shape"]:
+    """Round grey levels to what an image holds."""
+    return np.clip(np.rint(view), 0, 255).astype(np.uint8)

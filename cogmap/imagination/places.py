@@ -1,0 +1,121 @@
+"""Remembered places: views of a walk, where and in which direction the map perceives them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Float, Float32, Int
+from scipy.spatial import KDTree
+
+CANDIDATES = 40
+"""Nearest places that sources are chosen from."""
+APART = 0.5
+"""How far a source must be from the others, in units of its distance from the target."""
+RIDGE = 1e-2
+"""Of the affine weights, in units of the mean of their three normal equations."""
+
+
+class Sources(NamedTuple):
+    """Remembered views that a view from elsewhere is made of, the nearest first."""
+
+    indices: Int[np.ndarray, "targets sources"]
+    distances: Float[np.ndarray, "targets sources"]
+    """From the target, in the unit of the map; infinite where there are no more."""
+    affine: Float32[np.ndarray, "targets sources"]
+    """They sum to one and may be negative: what varies linearly over places is Σ w y at the target."""
+    near: Float32[np.ndarray, "targets sources"]
+    """They sum to one and fall with distance, for mixing what should be equal; 0 where there are no more."""
+
+
+@dataclass(frozen=True, eq=False)
+class RememberedPlaces:
+    """A memory of views in the frame of a map."""
+
+    views: Any
+    """Panoramas (views, height, width, 3), which may lie on disk."""
+    position: Float[np.ndarray, "views 2"]
+    """In the unit of the map."""
+    phase: Float[np.ndarray, "views"]
+    """Heading in the frame of the map, rad."""
+
+    @cached_property
+    def tree(self) -> KDTree:
+        """To find what is near."""
+        return KDTree(self.position)
+
+    def sources(
+        self,
+        position: Float[np.ndarray, "targets 2"],
+        count: int,
+        *,
+        without: Int[np.ndarray, "targets"] | None = None,
+    ) -> Sources:
+        r"""Choose places around each target, and weigh them.
+
+        A body that turns on the spot, or slides along a wall, leaves many views of nearly one place, and the
+        nearest few may all be of these. So of the nearest places each is taken that is not near to one taken
+        already, compared with how far it is from the target: they lie around it.
+
+        With u the places as seen from the target and p = 1 / (|u|² + ¼ m²), where m is their mean distance,
+        the affine weights are those of a regression, read off at the target:
+
+        .. math:: w_j = p_j\,(1, u_j)\,\bigl(\textstyle\sum_i p_i (1, u_i)^\top (1, u_i) + λ\bigr)^{-1} e_1 .
+
+        Parameters
+        ----------
+        position
+            Of the targets, in the unit of the map.
+        count
+            How many sources each has at most.
+        without
+            A remembered view that each target may not use, as one that is itself imagined.
+
+        References
+        ----------
+        Arya & Mount (1993), Approximate nearest neighbor queries in fixed dimensions: the pruning rule.
+        Cleveland (1979), Robust locally weighted regression: the affine weights.
+        """
+        candidates = min(CANDIDATES, len(self.position) - (without is not None))
+        # asked for as a list, also one neighbour has an axis of its own
+        asked = np.arange(1, candidates + 1 + (without is not None))
+        reach, near = self.tree.query(position, k=asked)
+        if without is not None:
+            # the forbidden one goes last, or else the farthest, and is cut off
+            order = np.argsort(near == without[:, None], axis=1, kind="stable")[:, :candidates]
+            reach, near = np.take_along_axis(reach, order, axis=1), np.take_along_axis(near, order, axis=1)
+        places = self.position[near]
+        chosen = np.zeros((len(near), count), np.int64)
+        taken = np.ones(len(near), np.int64)
+        for candidate in range(1, candidates):
+            kept = np.take_along_axis(places, chosen[:, :, None], axis=1)
+            gap = np.linalg.norm(kept - places[:, candidate, None], axis=2).min(axis=1)
+            fits = np.flatnonzero((taken < count) & (gap > APART * reach[:, candidate]))
+            chosen[fits, taken[fits]] = candidate
+            taken[fits] += 1
+        there = np.arange(count) < taken[:, None]
+        distances = np.where(there, np.take_along_axis(reach, chosen, axis=1), np.inf)
+        offsets = np.take_along_axis(places, chosen[:, :, None], axis=1) - position[:, None]
+        affine, mixing = _weights(offsets, distances)
+        return Sources(np.take_along_axis(near, chosen, axis=1), distances, affine, mixing)
+
+
+def _weights(
+    offsets: Float[np.ndarray, "targets sources 2"], distances: Float[np.ndarray, "targets sources"]
+) -> tuple[Float32[np.ndarray, "targets sources"], Float32[np.ndarray, "targets sources"]]:
+    there = np.isfinite(distances)
+    squares = np.where(there, distances, 0) ** 2
+    mean = np.sqrt(squares.sum(axis=1) / there.sum(axis=1))[:, None] + 1e-12
+    trust = there / (squares + mean**2 / 4)
+    design = np.concatenate([np.ones_like(offsets[:, :, :1]), offsets / mean[:, :, None]], axis=2)
+    weighed = design * trust[:, :, None]
+    normal = weighed.transpose(0, 2, 1) @ design
+    normal += RIDGE * np.trace(normal, axis1=1, axis2=2)[:, None, None] / 3 * np.diag([0.0, 1.0, 1.0])
+    first = np.broadcast_to(np.array([[1.0], [0.0], [0.0]]), (len(normal), 3, 1))
+    affine = (weighed @ np.linalg.solve(normal, first))[:, :, 0]
+    near = there / (np.sqrt(squares) + 1e-3 * mean)
+    return tuple(  # type: ignore[return-value]
+        (one / one.sum(axis=1, keepdims=True)).astype(np.float32) for one in (affine, near)
+    )

@@ -1,0 +1,125 @@
+"""Turning a panorama: its columns shift around the circle, by fractions of a column as well."""
+
+from __future__ import annotations
+
+import typing
+from typing import Any, NamedTuple
+
+import numpy as np
+from jaxtyping import Float, Float32, UInt8
+
+from arena.angles import wrap_angle
+from cogmap.errors import CogmapError
+from cogmap.features.compass import turns
+from cogmap.features.strips import strips
+from cogmap.graph.knn import nearest_points
+from cogmap.kernels import kernel
+
+PAIRS = 1000
+"""Pairs of views that are asked by how much a turn shifts the columns."""
+LEAST_RESULTANT = 0.99
+"""Of turns seen and turns perceived, where turning counts as a shift."""
+
+
+def turning_sense(
+    views: Any, position: Float[np.ndarray, "views 2"], phase: Float[np.ndarray, "views"]
+) -> int:
+    """Tell whether phase grows to the left (1) or, in a mirrored map, to the right (−1), from views alone.
+
+    The turn between panoramas from near places is compared with the difference of their phases.
+
+    Raises
+    ------
+    CogmapError
+        When they do not agree: these views do not shift as a whole when the body turns.
+    """
+    chosen = np.linspace(0, len(phase) - 1, min(PAIRS, len(phase))).astype(int)
+    near = nearest_points(position, 1).indices[chosen, 0]
+    both = strips(np.stack([np.asarray(views[view]) for view in np.concatenate([chosen, near])]))
+    seen = turns(both, np.arange(2 * len(chosen)).reshape(2, -1).T)
+    felt = phase[chosen] - phase[near]
+    agreed = {sense: float(abs(np.exp(1j * (seen - sense * felt)).mean())) for sense in (1, -1)}
+    best = max(agreed, key=agreed.__getitem__)
+    if agreed[best] < LEAST_RESULTANT:
+        raise CogmapError(
+            f"turning does not shift the columns of these views (R = {agreed[best]:.3f}): they cannot be "
+            "turned in the mind; give panoramas of a body that turns on the spot, or use method='decoder'"
+        )
+    return best
+
+
+def columns_turned(turn: Float[np.ndarray, "*shape"], width: int) -> Float32[np.ndarray, "*shape"]:
+    """Give the columns by which a panorama shifts to the right when the body turns left by so much (rad)."""
+    return np.asarray(wrap_angle(turn) * width / (2 * np.pi), np.float32)
+
+
+class Painted(NamedTuple):
+    """A panorama put together from several, and how far these agree."""
+
+    view: Float32[np.ndarray, "height width 3"]
+    spread: Float32[np.ndarray, "height width"]
+    """Root mean square difference of what the sources show, weighted by `near`, grey levels."""
+
+
+def blended(
+    views: UInt8[np.ndarray, "sources height width 3"],
+    shifts: Float32[np.ndarray, "sources"],
+    affine: Float32[np.ndarray, "sources"],
+    near: Float32[np.ndarray, "sources"],
+) -> Painted:
+    """Shift panoramas by columns to the right, each by its own, and mix them by their affine weights.
+
+    What changes linearly with place comes out right, and what moves by more than a blur of it is doubled.
+    Between columns a panorama is cubic (Catmull & Rom 1974), which keeps detail that a straight line would
+    blur.
+    """
+    return Painted(*_blended(views, shifts, affine, near))
+
+
+@kernel(nogil=True, fastmath={"contract"})
+@typing.no_type_check
+def _blended(views, shifts, affine, near):
+    sources, height, width, _ = views.shape
+    mixed = np.zeros((height, width, 3), np.float32)
+    spread = np.zeros((height, width), np.float32)
+    ring = np.empty((width + 3) * 3, np.float32)
+    shifted = np.empty(width * 3, np.float32)
+    total, squares = np.empty(width * 3, np.float32), np.empty(width * 3, np.float32)
+    half = np.float32(0.5)
+    for row in range(height):
+        total[:] = 0
+        squares[:] = 0
+        blend = mixed[row].reshape(-1)
+        for source in range(sources):
+            if near[source] == 0:
+                continue
+            whole = np.floor(shifts[source])
+            # column c is read at c − shift: between two columns, b after the left one
+            b = np.float32(1) - np.float32(shifts[source] - whole)
+            before = half * (-b + 2 * b * b - b * b * b)
+            left = half * (2 - 5 * b * b + 3 * b * b * b)
+            right = half * (b + 4 * b * b - 3 * b * b * b)
+            after = half * (b * b * b - b * b)
+            first = (-int(whole) - 2) % width
+            line = views[source, row].reshape(-1)
+            for value in range(3 * (width - first)):
+                ring[value] = line[3 * first + value]
+            for value in range(3 * (first + 3)):
+                ring[3 * (width - first) + value] = line[value % (3 * width)]
+            for value in range(3 * width):
+                shifted[value] = (
+                    before * ring[value]
+                    + left * ring[value + 3]
+                    + right * ring[value + 6]
+                    + after * ring[value + 9]
+                )
+            for value in range(3 * width):
+                blend[value] += affine[source] * shifted[value]
+                total[value] += near[source] * shifted[value]
+                squares[value] += near[source] * shifted[value] * shifted[value]
+        for column in range(width):
+            variance = np.float32(0)
+            for value in range(3 * column, 3 * column + 3):
+                variance += max(np.float32(0), squares[value] - total[value] * total[value])
+            spread[row, column] = np.sqrt(variance / 3)
+    return mixed, spread
