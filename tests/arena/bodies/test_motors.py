@@ -55,7 +55,7 @@ def test_delay_within_a_step_and_beyond_it() -> None:
 
 
 def test_contact_in_any_part_of_a_step_is_told() -> None:
-    drive = Disc(delay=0.1).place(OPEN, (1.7, 0.0, 0.0))
+    drive = Disc(delay=0.1).place(OPEN, (1.72, 0.0, 0.0))
     assert not drive.step(0.6, 0.0, 0.2)
     assert not drive.step(-0.6, 0.0, 0.01)
     # The wall is met in the first part, then the body goes back.
@@ -85,7 +85,7 @@ def test_a_weak_wheel_drives_in_a_circle() -> None:
 
 def test_slip_is_of_each_wheel_and_from_the_generator_alone() -> None:
     body = Disc(slip=0.05)
-    turned, again, other = (poses(placed(body, seed), np.zeros((9, 2)) + [0.1, 0.5]) for seed in (0, 0, 1))
+    turned, again, other = (poses(placed(body, seed), np.tile([0.1, 0.5], (9, 1))) for seed in (0, 0, 1))
     np.testing.assert_array_equal(turned, again)
     assert not np.array_equal(turned, other)
     draws, drive = RNG(0).standard_normal((9, 2)), placed(body)

@@ -87,7 +87,7 @@ def test_commands_are_no_truth_and_may_stop(tmp_path: Path) -> None:
     with pytest.raises(ArenaError, match="commands has NaN or infinite"):
         recording(commands=np.full((600, 2), np.inf))
     with pytest.raises(ArenaError, match="commands is float64"):
-        recording(commands=commands[1:])
+        _check(rec.views, {"times": rec.times, "commands": commands[1:]})
 
 
 @pytest.mark.parametrize(
