@@ -83,14 +83,14 @@ def explore(
     path = None if out is None else Path(out)
     if not isinstance(motion, Motion):
         _check_numbers(views, seed)
-        rng, dt = np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0]), dt or DT
-        explorers = Explorers(arena, camera, nose=nose, body=body, count=1)
-        explorers.begin(np.zeros(1, int), [start or random_start(arena, body, rng)], [rng])
-        loop = islice(act_and_look(explorers, of_one(motion), dt), views)
-        steps = tqdm(loop, total=views, unit="view", disable=not progress)
-        name = getattr(motion, "__name__", type(motion).__name__)
+        dt, name = DT if dt is None else dt, getattr(motion, "__name__", type(motion).__name__)
         told |= {"motion": {"kind": name, "start": start, "dt": dt}, "walk": {}, "origin": origin()}
-        return write_down(iter(steps), dt, path, (camera.height, camera.width, 3), told)
+        rng = np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0])
+        one = Explorers(arena, camera, nose=nose, body=body, count=1)
+        one.begin(np.zeros(1, int), [random_start(arena, body, rng) if start is None else start], [rng])
+        steps = islice(act_and_look(one, of_one(motion), dt), views)
+        counted = tqdm(steps, total=views, unit="view", disable=not progress)
+        return write_down(iter(counted), dt, path, (camera.height, camera.width, 3), told)
     if start is not None or dt is not None:
         raise ArenaError(f"start and dt are of a policy; {type(motion).__name__} has its own")
     views = motion.default_views if views is None else views

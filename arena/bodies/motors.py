@@ -72,7 +72,7 @@ class Motors:
         late = np.zeros_like(self._obeyed)
         late[which] = commands
         self._waiting.append((self._body.delay, late))
-        parts, left = [], dt
+        parts, left = list[tuple[float, np.ndarray]](), dt
         while left > INSTANT or not parts:
             due = self._waiting[0][0] if self._waiting else math.inf
             part = left if due > left - INSTANT else due
