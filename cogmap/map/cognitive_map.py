@@ -266,7 +266,7 @@ class CognitiveMap:
         if self.relaxed_places_ is None:
             return plain
         there = self.relaxed_places_.locate(views, plain.position)
-        finer = {"position": there.position.astype(np.float32), "phase": there.phase.astype(np.float32)}
+        finer = {name: part.astype(np.float32) for name, part in there._asdict().items()}
         return replace(plain, **finer, plain=plain)
 
     def refine(self, views: Any) -> CognitiveMap:
