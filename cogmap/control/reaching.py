@@ -21,6 +21,8 @@ NEAR = 2.0
 """Decisions' ways from the goal within which the body may go backwards."""
 ALIGNED = 0.6
 """Error of direction (rad) from which on the body only turns."""
+EASE = 8
+"""Decisions near the goal in which what counts as reached doubles: as exact as slips and noise allow."""
 SETTLED = 2
 """Decisions at the goal after which it stops."""
 PATIENCE = 10
@@ -74,7 +76,7 @@ class Reaching:
         self._last, self._before = np.zeros((count, 2)), np.zeros((count, 2))
         self._position, self._phase = np.full((count, 2), np.nan), np.full(count, np.nan)
         self._ahead: list[list[Float[np.ndarray, "2"]]] = [[] for _ in range(count)]
-        self._at_goal, self._held, self._unknown = (np.zeros(count, int) for _ in range(3))
+        self._tries, self._at_goal, self._held, self._unknown = (np.zeros(count, int) for _ in range(4))
         self._backing, self._docked = np.zeros(count, int), np.zeros(count, bool)
         self.outcomes_ = np.full(count, Outcome.ON_THE_WAY, int)
 
@@ -144,14 +146,16 @@ class Reaching:
         backwards = last & (far < NEAR * steering.pace) & (np.abs(bearing) > np.pi / 2)
         bearing = np.where(backwards, wrap_angle(bearing + np.pi), bearing)
         forward = np.where(backwards, -far, far) * np.clip(1 - np.abs(bearing) / ALIGNED, 0, 1)
-        docked = last & (far < steering.close * np.where(self._docked[live], 2, 1))
+        self._tries[live] += last & (far < steering.pace)
+        ease = 2.0 ** (self._tries[live] / EASE)
+        docked = last & (far < steering.close * ease * np.where(self._docked[live], 2, 1))
         self._docked[live] = docked
         turn = np.where(docked, wrap_angle(self._goal_phase[live] - phase), bearing)
         forward[docked] = 0
         backing = self._backing[live] > 0
         forward[backing], turn[backing] = -0.5 * steering.pace, 0
         self._backing[live] = np.maximum(self._backing[live] - 1, 0)
-        there = docked & (np.abs(turn) < steering.facing)
+        there = docked & (np.abs(turn) < steering.facing * ease)
         forward[there] = turn[there] = 0
         self._at_goal[live] = np.where(there, self._at_goal[live] + 1, 0)
         self.outcomes_[live[self._at_goal[live] >= SETTLED]] = Outcome.ARRIVED

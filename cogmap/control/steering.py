@@ -10,8 +10,6 @@ from cogmap.errors import CogmapError
 
 CLOSE = 0.04
 """Share of a decision's way from the goal within which it counts as reached; of its turn a sixth of that."""
-JITTER = 4.0
-"""Times the usual error of a step from the goal within which it counts as reached, when that is more."""
 CLEAR = 20.0
 """Times its own noise by which a motion must answer to commands."""
 
@@ -26,7 +24,7 @@ class Steering:
     pace, turn
         How far it gets (the map's unit) and turns (rad) in a decision at most.
     close, facing
-        Distance (the map's unit) and turn (rad) from a goal within which the body can tell no better.
+        Distance (the map's unit) and turn (rad) from a goal within which it counts as reached.
 
     Raises
     ------
@@ -48,8 +46,7 @@ class Steering:
         self._go = inverse[:, :2] @ along[:, 0]
         self._turn = inverse[:, 2]
         self.pace, self.turn = (float(1 / np.abs(gain).max()) for gain in (self._go, self._turn))
-        self.close = max(CLOSE * self.pace, JITTER * float(motor.noise_[:2].max()))
-        self.facing = max(CLOSE / 6 * self.turn, JITTER * float(motor.noise_[2]))
+        self.close, self.facing = CLOSE * self.pace, CLOSE / 6 * self.turn
 
     def command(
         self, forward: Float[np.ndarray, "bodies"], turn: Float[np.ndarray, "bodies"]
