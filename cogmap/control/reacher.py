@@ -17,6 +17,7 @@ from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.even_memory import EvenMemory
 from cogmap.navigation.place_graph import PlaceGraph
 
+
 @dataclass(eq=False)
 class Reacher:
     """Reaches goals that are given by images, from a map, a memory and a motor model.

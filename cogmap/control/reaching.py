@@ -119,7 +119,9 @@ class Reaching:
         wanted = np.linalg.norm(foretold - self._position[live], axis=1)
         gone = np.linalg.norm(position - self._position[live], axis=1)
         held = began & (wanted > 0.3 * self._steering.pace) & (gone < 0.3 * wanted)
-        self._held[live] = np.where(held, self._held[live] + 1, np.where(gone > 0.3 * wanted, 0, self._held[live]))
+        self._held[live] = np.where(
+            held, self._held[live] + 1, np.where(gone > 0.3 * wanted, 0, self._held[live])
+        )
         self._backing[live[held & (self._held[live] % HELD == 0)]] = 2
         self._position[live], self._phase[live] = position, phase
         self.outcomes_[live[self._unknown[live] >= PATIENCE]] = Outcome.LOST
@@ -138,7 +140,9 @@ class Reaching:
     def _decide(self, live: Int[np.ndarray, "live"]) -> Float[np.ndarray, "live 2"]:
         steering = self._steering
         position, phase = steering.coming(self._position[live], self._phase[live], self._last[live])
-        target = np.array([self._corner(explorer, here) for explorer, here in zip(live, position, strict=True)])
+        target = np.array(
+            [self._corner(explorer, here) for explorer, here in zip(live, position, strict=True)]
+        )
         last = np.array([len(self._ahead[explorer]) == 1 for explorer in live])
         step = target - position
         far = np.linalg.norm(step, axis=1)

@@ -1,6 +1,5 @@
 """Steering: the command for a motion that is wanted, by a motor model turned round."""
 
-
 import numpy as np
 from jaxtyping import Float
 
@@ -36,7 +35,9 @@ class Steering:
         self._motor = motor
         total = motor.response_.sum(axis=0)
         along, strength, _ = np.linalg.svd(total[:2])
-        if not (strength[0] > CLEAR * motor.noise_[:2].min() and np.abs(total[2]).max() > CLEAR * motor.noise_[2]):
+        if not (
+            strength[0] > CLEAR * motor.noise_[:2].min() and np.abs(total[2]).max() > CLEAR * motor.noise_[2]
+        ):
             raise CogmapError(
                 "commands hardly move or turn this body, as far as its motor model knows; babble longer, with "
                 "both numbers of the command"

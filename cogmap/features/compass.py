@@ -53,6 +53,26 @@ def turns(
     return np.concatenate(found)
 
 
+def misfit(
+    grey: Series,
+    pairs: Int[np.ndarray, "pairs 2"],
+    turned: Float[np.ndarray, "pairs"],
+    others: Series | None = None,
+) -> Float[np.ndarray, "pairs"]:
+    """Give how unlike two panoramas are once the second is turned to the first, in [0, 2].
+
+    It is Σ |difference|² / Σ (|first|² + |second|²) over all but their means, 1 for what has nothing in common.
+    """
+    seconds = grey if others is None else others
+    found = []
+    for rows in np.split(np.arange(len(pairs)), range(BLOCK, len(pairs), BLOCK)):
+        first, second = grey[pairs[rows, 0], :, 1:], seconds[pairs[rows, 1], :, 1:]
+        second = second * np.exp(-1j * turned[rows, None, None].astype(np.float32) * _f[1:])
+        power = sum(np.square(np.abs(part)).sum(axis=(1, 2)) for part in (first, second))
+        found.append(np.square(np.abs(first - second)).sum(axis=(1, 2)) / (power + 1e-12))
+    return np.concatenate(found).astype(np.float64)
+
+
 def _turns(
     first: Complex64[np.ndarray, "pairs rows frequencies"],
     second: Complex64[np.ndarray, "pairs rows frequencies"],

@@ -1,7 +1,7 @@
 """Panorama codes: points whose distance is that of the poses they were taken from, up to scale."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -11,12 +11,21 @@ from sklearn.decomposition import PCA
 from sklearn.utils.validation import check_is_fitted
 
 from cogmap.errors import CogmapError
-from cogmap.features.compass import synchronise_headings, turns
+from cogmap.features.compass import misfit, synchronise_headings, turns
 from cogmap.features.strips import Strips, strips
 from cogmap.graph.knn import nearest_points
 from cogmap.graph.neighbour_graph import neighbour_graph
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
+
+
+class Compared(NamedTuple):
+    """What known views tell of others."""
+
+    headings: Float[np.ndarray, "views"]
+    """rad."""
+    misfit: Float[np.ndarray, "views"]
+    """Of the known one that fits best (`compass.misfit`)."""
 
 
 class PanoramaCode(TransformerMixin, BaseEstimator):
@@ -101,15 +110,22 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
 
     def heading(self, seen: Strips, nearest: Int[np.ndarray, "views near"]) -> Float[np.ndarray, "views"]:
         """Give θ of other panoramas, rad, as the mean of what these known views near each tell of it."""
+        return self.compare(seen, nearest).headings
+
+    def compare(self, seen: Strips, nearest: Int[np.ndarray, "views near"]) -> Compared:
+        """Turn known views to other panoramas, and see how well they fit."""
         pairs = np.column_stack([np.repeat(np.arange(len(nearest)), nearest.shape[1]), nearest.ravel()])
         with one_thread():
-            told = self.headings_[pairs[:, 1]] + turns(seen.grey, pairs, self._grey)
-        return np.asarray(np.angle(np.exp(1j * told).reshape(nearest.shape).sum(axis=1)))
+            turned = turns(seen.grey, pairs, self._grey)
+            unlike = misfit(seen.grey, pairs, turned, self._grey).reshape(nearest.shape)
+            told = np.exp(1j * (self.headings_[pairs[:, 1]] + turned)).reshape(nearest.shape)
+        return Compared(np.asarray(np.angle(told.sum(axis=1))), unlike.min(axis=1))
 
-    def turns(self, pairs: Int[np.ndarray, "pairs 2"]) -> Float[np.ndarray, "pairs"]:
-        """Give the heading of the first minus that of the second of known views near to each other, rad."""
+    def compare_known(self, pairs: Int[np.ndarray, "pairs 2"]) -> Compared:
+        """Give by how much the first of known views near each other is turned from the second, and the misfit."""
         with one_thread():
-            return turns(self._grey, pairs)
+            turned = turns(self._grey, pairs)
+            return Compared(turned, misfit(self._grey, pairs, turned))
 
     def state(self) -> dict[str, np.ndarray]:
         """Give all that was learnt, by name; complex numbers as pairs of real ones."""

@@ -20,6 +20,8 @@ from cogmap.map.pose_graph import PoseGraph, relax_walk
 
 NEIGHBOURS = 60
 """Whose places make up that of a view."""
+BESIDE = 10
+"""Which neighbour tells what is usual."""
 NORTH = 5
 """Of these, which tell the heading."""
 RIDGE = 1e-3
@@ -38,8 +40,19 @@ class Located(NamedTuple):
     phase: Float[np.ndarray, "views"]
     """Heading in the map's frame, rad in (−π, π]."""
     novelty: Float[np.ndarray, "views"]
-    """How far the farthest of its neighbours is, over what is usual among remembered views: about 1 where it
-    is known, and many in another room."""
+    """How far the farthest of its neighbours is by looks, or how unlike the nearest once turned, over what is
+    usual among remembered views: about 1 where it is known, and many in another room."""
+
+
+class _Usual(NamedTuple):
+    """What is usual among remembered views."""
+
+    apart: float
+    """Distance by looks to the farthest neighbour."""
+    reach: float
+    """Distance in the map beyond which a neighbour by looks is none."""
+    misfit: float
+    """To a neighbour `BESIDE`."""
 
 
 class RelaxedPlaces:
@@ -57,12 +70,10 @@ class RelaxedPlaces:
         Of the remembered views, (views, 2) in the map's metric frame and (views,) rad.
     """
 
-    def __init__(self, code: PanoramaCode, places: Float[np.ndarray, "views 2"], *, mirrored: bool) -> None:
-        self._code, self.places_, self._mirrored = code, places, mirrored
-        near = nearest_points(code.places_, NEIGHBOURS)
-        # of the farthest: the nearest was often taken on the same spot
-        self._spacing = float(np.median(near.distances[:, -1]))
-        self._reach = _reach(places, near.indices)
+    def __init__(
+        self, code: PanoramaCode, places: Float[np.ndarray, "views 2"], usual: _Usual, *, mirrored: bool
+    ) -> None:
+        self._code, self.places_, self._usual, self._mirrored = code, places, usual, mirrored
 
     @classmethod
     def learn(
@@ -88,11 +99,10 @@ class RelaxedPlaces:
                 f"there are {len(position)} views to relax places of; give more than {NEIGHBOURS}"
             )
         code = PanoramaCode().fit(views)
-        near = nearest_points(code.places_, NEIGHBOURS).indices
+        near, apart = nearest_points(code.places_, NEIGHBOURS)
         mirrored = _mirrored(code, near[:, 0], phase)
         compass = wrap_angle(-code.headings_ if mirrored else code.headings_)
-        usual = _reach(position, near)
-        near = _alike(near, position, position, usual)
+        near = _alike(near, position, position, _reach(position, near))
         weights = affine_weights(code.places_, near, code.places_, RIDGE)
         affine = _matrix(near, weights)
         # Neighbours agree on turns better than charts do on phase, but drift over the room; charts do not.
@@ -103,7 +113,16 @@ class RelaxedPlaces:
         places = np.asarray(affine @ (affine @ (position[:, 0] + 1j * position[:, 1])))
         poses = relax_walk(PoseGraph(places, wrap_angle(compass + np.angle(drift))), affine)
         code.headings_ = -poses.headings if mirrored else poses.headings
-        return cls(code, np.column_stack([poses.places.real, poses.places.imag]), mirrored=mirrored)
+        relaxed = np.column_stack([poses.places.real, poses.places.imag])
+        # some neighbours on: the nearest was often taken on the same spot
+        pairs = np.column_stack([np.arange(len(near)), near[:, BESIDE]])[near[:, BESIDE] >= 0]
+        unlike = np.median(code.compare_known(pairs).misfit)
+        return cls(
+            code,
+            relaxed,
+            _Usual(float(np.median(apart[:, -1])), _reach(relaxed, near), float(unlike)),
+            mirrored=mirrored,
+        )
 
     @property
     def headings_(self) -> Float[np.ndarray, "views"]:
@@ -118,22 +137,29 @@ class RelaxedPlaces:
         seen = strips(views)
         codes = self._code.place(seen)
         near = nearest_points(self._code.places_, NEIGHBOURS, queries=codes)
-        indices = _alike(near.indices, recalled, self.places_, self._reach)
+        indices = _alike(near.indices, recalled, self.places_, self._usual.reach)
         weights = affine_weights(self._code.places_, indices, codes, RIDGE)
         position = np.einsum("vk,vkc->vc", weights, self.places_[indices])
         north = np.where(indices < 0, indices[:, :1], indices)[:, :NORTH]
-        heading = self._code.heading(seen, north)
+        heading, unlike = self._code.compare(seen, north)
         phase = wrap_angle(-heading if self._mirrored else heading)
-        return Located(position, phase, near.distances[:, -1] / self._spacing)
+        unusual = np.sqrt(unlike / self._usual.misfit)
+        return Located(position, phase, np.maximum(near.distances[:, -1] / self._usual.apart, unusual))
 
     def state(self) -> dict[str, np.ndarray]:
         """Give all that was learnt, by name."""
-        return {**self._code.state(), "positions": self.places_, "mirrored": np.array(self._mirrored)}
+        own = {
+            "positions": self.places_,
+            "mirrored": np.array(self._mirrored),
+            "usual": np.array(self._usual),
+        }
+        return {**self._code.state(), **own}
 
     @classmethod
     def from_state(cls, state: Mapping[str, np.ndarray]) -> RelaxedPlaces:
         """Make relaxed places of what `state` gave."""
-        return cls(PanoramaCode.from_state(state), state["positions"], mirrored=bool(state["mirrored"]))
+        code, usual = PanoramaCode.from_state(state), _Usual(*state["usual"].tolist())
+        return cls(code, state["positions"], usual, mirrored=bool(state["mirrored"]))
 
 
 def _mirrored(
@@ -141,7 +167,7 @@ def _mirrored(
 ) -> bool:
     """Tell whether phases run the other way than the shifts of panoramas; refuse where they do neither."""
     pairs = np.column_stack([np.arange(len(nearest)), nearest])
-    shifted, turned = code.turns(pairs), phase - phase[nearest]
+    shifted, turned = code.compare_known(pairs).headings, phase - phase[nearest]
     with_it, against = (abs(np.exp(1j * (turned - sign * shifted)).mean()) for sign in (1, -1))
     if not max(with_it, against) >= SHIFTS:
         raise CogmapError(
