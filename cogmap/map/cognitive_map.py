@@ -270,7 +270,7 @@ class CognitiveMap:
         return replace(plain, **finer, plain=plain)
 
     def refine(self, views: Any) -> CognitiveMap:
-        """Relax places and headings of remembered panoramas, so that what is perceived is fine enough to act on.
+        """Relax places and headings of panoramas, so that what is perceived is fine enough to act on.
 
         Best the views that were learnt, in the order of the walk. From then on `perceive` gives positions and
         phases by `cogmap.map.relaxed_places.RelaxedPlaces`, and beside them those of the charts alone

@@ -146,6 +146,12 @@ class RelaxedPlaces:
         unusual = np.sqrt(unlike / self._usual.misfit)
         return Located(position, phase, np.maximum(near.distances[:, -1] / self._usual.apart, unusual))
 
+    def turns(self, views: Any, others: Any) -> Float[np.ndarray, "views"]:
+        """Tell by how much (rad, as phase) to turn from each view to look as another from there does."""
+        pairs = np.repeat(np.arange(len(views))[:, None], 2, axis=1)
+        turned = turns(strips(others).grey, pairs, strips(views).grey)
+        return -turned if self._mirrored else turned
+
     def nearest(self, views: Any) -> Int[np.ndarray, "views"]:
         """Tell which remembered view looks most like each of these from any heading."""
         seen = self._code.place(strips(views))
