@@ -128,7 +128,7 @@ def _round(
         change = ahead.conj() * (differences @ (moved[:, 0] + 1j * moved[:, 1]))
         across = change.imag - step.real * (means @ moved[:, 2])
         # a trace of ridge: nothing else holds a place without steps in its plane
-        return (gradient(moved, change.real, across) + 1e-8 * moved).ravel()
+        return np.asarray((gradient(moved, change.real, across) + 1e-8 * moved).ravel())
 
     now = np.column_stack([places.real / length, places.imag / length, added])
     downhill = -gradient(now, step.real - 1, step.imag).ravel()
@@ -136,9 +136,9 @@ def _round(
     held = stiff + back.power(2) @ (0.5 * (paced + counted))
     scale = np.column_stack([held, held, LEVEL * stiff + forth.power(2) @ counted]).ravel()
     system = LinearOperator((3 * views, 3 * views), matvec=normal)
-    moved = cg(system, downhill, rtol=1e-4, maxiter=MOST_ITERATIONS, M=sp.diags_array(1 / scale))[0]
-    moved = moved.reshape(views, 3)
-    return places + length * (moved[:, 0] + 1j * moved[:, 1]), added + moved[:, 2]
+    found = cg(system, downhill, rtol=1e-4, maxiter=MOST_ITERATIONS, M=sp.diags_array(1 / scale))[0]
+    right, up, turned = found.reshape(views, 3).T
+    return places + length * (right + 1j * up), added + turned
 
 
 def _cauchy(residuals: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "steps"]:
