@@ -121,14 +121,14 @@ def _round(
         slope[:, 2] *= LEVEL
         slope[:, :2] += back @ np.column_stack([pull.real, pull.imag])
         slope[:, 2] -= forth @ (counted * step.real * across)
-        return slope
+        return np.asarray(slope)
 
     def normal(flat: Float[np.ndarray, "_"]) -> Float[np.ndarray, "_"]:
         moved = flat.reshape(views, 3)
         change = ahead.conj() * (differences @ (moved[:, 0] + 1j * moved[:, 1]))
         across = change.imag - step.real * (means @ moved[:, 2])
         # a trace of ridge: nothing else holds a place without steps in its plane
-        return np.asarray((gradient(moved, change.real, across) + 1e-8 * moved).ravel())
+        return (gradient(moved, change.real, across) + 1e-8 * moved).ravel()
 
     now = np.column_stack([places.real / length, places.imag / length, added])
     downhill = -gradient(now, step.real - 1, step.imag).ravel()
