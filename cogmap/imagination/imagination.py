@@ -8,12 +8,14 @@ from functools import cached_property
 from typing import Any, Literal, Protocol, get_args
 
 import numpy as np
-from jaxtyping import Float, Float32, UInt8
+from jaxtyping import Float, Float32, Int, UInt8
 from numpy.typing import ArrayLike
 
 from cogmap.errors import CogmapError
+from cogmap.imagination.alignment import aligned, coarse
 from cogmap.imagination.places import RememberedPlaces, Sources
 from cogmap.imagination.stroll import stroll
+from cogmap.imagination.surprise import Surprise, unusual
 from cogmap.imagination.turning import Painted, blended, columns_turned, turning_sense
 from cogmap.imagination.warp import warped
 from cogmap.inputs import check_array, check_choice, check_views, checked_count
@@ -34,6 +36,9 @@ Method = Literal["turned", "blend", "warp"]
 """
 STRAIGHT = 0.2
 """Turn between views (rad) up to which a body counts as going straight on."""
+
+CALIBRATED = 500
+"""Remembered views that tell what is usual."""
 
 
 class Motor(Protocol):
@@ -177,6 +182,41 @@ class Imagination:
         moved = (motion[:, 0] + 1j * motion[:, 1]) * np.exp(1j * phase)
         return self.at(position + np.column_stack([moved.real, moved.imag]), phase + motion[:, 2])
 
+    def surprise(self, views: Any) -> Surprise:
+        """Tell what surprises in views: what differs from what is imagined at their own pose, and where.
+
+        Where something has changed the map perceives wrong poses; they are corrected by what has not
+        (`recognise`). What is usual is what remembered views differ from those imagined of the others, and
+        the threshold is above the most surprising of 500.
+        """
+        check_views(views, self.cmap.view_shape_)
+        poses = self.recognise(views)
+        return Surprise(
+            pixels=np.stack([pixels for pixels in self._unusual(views, poses)]),
+            position=poses[:, :2],
+            phase=poses[:, 2],
+            threshold=self.threshold,
+            sense=self.sense,
+        )
+
+    def recognise(self, views: Any) -> Float[np.ndarray, "views 3"]:
+        """Tell from where views were seen, position and phase, as what is imagined there fits them best.
+
+        Unlike `perceive` it looks at every pixel and mistrusts those that do not fit, so it holds when a
+        thing was moved; it takes thirty times as long.
+        """
+        return self._aligned(views, np.column_stack(self.perceive(views)), None)
+
+    @cached_property
+    def threshold(self) -> float:
+        """How surprising a pixel is at most where nothing has changed; half more than among remembered views."""
+        places = self.places
+        chosen = np.unique(np.linspace(0, len(places.phase) - 1, CALIBRATED).astype(int))
+        views = np.stack([places.views[view] for view in chosen])
+        poses = np.column_stack([places.position[chosen], places.phase[chosen]])
+        poses = self._aligned(views, poses, chosen)
+        return 1.5 * max(float(pixels.max()) for pixels in self._unusual(views, poses, chosen))
+
     @cached_property
     def places(self) -> RememberedPlaces:
         """What is remembered, where the map perceives it."""
@@ -249,6 +289,29 @@ class Imagination:
         if np.isnan(activity.phase).any():
             raise CogmapError("this map has no compass, so nothing is imagined; explore more")
         return activity.position.astype(np.float64), activity.phase.astype(np.float64)
+
+    def _aligned(
+        self, views: Any, poses: Float[np.ndarray, "views 3"], without: Int[np.ndarray, "views"] | None
+    ) -> Float[np.ndarray, "views 3"]:
+        def paint(where: Float[np.ndarray, "views 3"], fine: bool) -> Float32[np.ndarray, "views pixels"]:  # noqa: FBT001
+            sources = self.places.sources(where[:, :2], self.sources, without=without)
+            painted = self.paint(sources, where[:, 2], method="warp" if fine else "blend")
+            return np.stack([coarse(each.view) for each in painted])
+
+        seen = np.stack([coarse(view) for view in views])
+        reach = np.array([[self.places.spacing, self.places.spacing, 0.01]])
+        return aligned(seen, poses, paint, reach)
+
+    def _unusual(
+        self,
+        views: Any,
+        poses: Float[np.ndarray, "views 3"],
+        without: Int[np.ndarray, "views"] | None = None,
+    ) -> Iterator[Float32[np.ndarray, "height width"]]:
+        sources = self.places.sources(poses[:, :2], self.sources, without=without)
+        distances = sources.distances[:, 0] / self.places.spacing
+        for view, painted, distance in zip(views, self.paint(sources, poses[:, 2]), distances, strict=True):
+            yield unusual(view, painted, float(distance))
 
     def _walked(
         self, route: Float[np.ndarray, "points 2"], step: float | None, start: float | None, end: float | None
