@@ -2,14 +2,18 @@
 
 from contextlib import suppress
 
+from arena.acting import Journeys, journeys
 from arena.bodies.disc import Disc
+from arena.bodies.heavy_disc import HeavyDisc
 from arena.errors import ArenaError
 from arena.exploration import explore
 from arena.eye.camera import Camera
+from arena.motions.babble import Babble
 from arena.motions.base import Motion, Walk
 from arena.motions.brownian import Brownian
 from arena.motions.chemotaxis import Chemotaxis
 from arena.motions.cyclic import Cyclic
+from arena.motions.policy import Policy
 from arena.motions.replay import Replay
 from arena.motions.rotation import Rotation
 from arena.motions.track import Track
@@ -26,6 +30,7 @@ Body = Disc
 __all__ = [
     "Arena",
     "ArenaError",
+    "Babble",
     "Block",
     "Body",
     "Box",
@@ -34,11 +39,14 @@ __all__ = [
     "Chemotaxis",
     "Cyclic",
     "Disc",
+    "HeavyDisc",
+    "Journeys",
     "Light",
     "Motion",
     "Nose",
     "OdourField",
     "Pillar",
+    "Policy",
     "Recording",
     "Replay",
     "Rotation",
@@ -48,6 +56,7 @@ __all__ = [
     "Wall",
     "explore",
     "gallery",
+    "journeys",
 ]
 
 # Of the extra `gym`. gymnasium 1 reads no entry points, so whoever imports the arena has the environment.

@@ -13,7 +13,8 @@ from pydantic import Field
 
 from arena.bodies.disc import Disc, Drive, Pose
 from arena.errors import ArenaError
-from arena.exploration import Eye
+from arena.explorers import Observation
+from arena.eye.base import Eye
 from arena.eye.camera import Camera
 from arena.motions.locomotion import random_start
 from arena.rooms.arena import Arena
@@ -21,7 +22,6 @@ from arena.settings import Settings
 from arena.smell.nose import Nose
 from arena.topview import TopView
 
-Observation = dict[str, np.ndarray]
 Reward = Callable[[Observation, Observation], float]
 """Judges a step by what was sensed before and after it."""
 
@@ -142,7 +142,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode, at `options["pose"]` or anywhere in free space."""
         super().reset(seed=seed)
-        self._drive = self.body.place(self.arena, self.starting_pose(options or {}))
+        self._drive = self.body.place(self.arena, self.starting_pose(options or {}), self.np_random)
         self._sniffer = self.nose.sniffer(len(self.arena.sources), self.np_random)
         self._now[0] = 0.0
         self._trail: list[tuple[float, float]] = []

@@ -1,97 +1,101 @@
 """Explore: a body walks through a room, looks and smells."""
 
 import json
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from threading import Event
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 import numba
 import numpy as np
 from tqdm import tqdm
 
-from arena.bodies.disc import Disc
+from arena.acting import DT, act_and_look
+from arena.bodies.disc import Disc, Pose
 from arena.errors import ArenaError
+from arena.explorers import Explorers
+from arena.eye.base import Eye
 from arena.eye.camera import Camera, Images, Poses
 from arena.motions.base import Motion, Striding, Walk, join
+from arena.motions.locomotion import random_start
+from arena.motions.policy import Policy
 from arena.recordings import storage
 from arena.recordings.origin import origin, unlike
 from arena.recordings.recording import Recording
 from arena.recordings.sharding import shards, write_shard
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
-
-
-@runtime_checkable
-class Eye(Protocol):
-    """What sees: an `arena.eye.camera.Camera`, or anything that renders like it."""
-
-    @property
-    def height(self) -> int:
-        """Rows of an image."""
-
-    @property
-    def width(self) -> int:
-        """Columns of an image."""
-
-    def render(self, arena: Arena, poses: Poses, *, rng: np.random.Generator) -> Images:
-        """Paint the views from poses, with what sensor noise there is from the generator."""
-
-    def model_dump(self) -> dict[str, Any]:
-        """Give the parameters that, with the arena, determine every pixel."""
+from arena.steered import of_one, write_down
 
 
 def explore(
     arena: Arena,
-    motion: Motion,
+    motion: Motion | Policy,
     camera: Eye,
     *,
     nose: Nose = Nose(),
     body: Disc = Disc(),
     views: int | None = None,
     seed: int = 0,
+    start: Pose | None = None,
+    dt: float | None = None,
     out: str | Path | None = None,
     progress: bool = False,
 ) -> Recording:
-    """Walk through the room, and record what is seen and smelt on the way.
+    """Move through the room, and record what is seen and smelt on the way.
 
-    As many threads as numba may use paint what a `Camera` sees, in memory while the body walks on, if its
-    motion is `Striding`. Their number changes nothing.
+    A `Motion` goes its way whatever it meets: as many threads as numba may use paint what a `Camera` sees, in
+    memory while the body walks on, if its motion is `Striding`. Their number changes nothing. A `Policy` is
+    shown every view, and asked what to do until the next; the recording has its `commands`.
 
     Parameters
     ----------
     arena, motion, camera, nose, body
         The room, how to move, and the animal.
     views
-        How many to take; None takes what the motion does by default.
+        How many to take; None takes what the motion does by default, or all until the policy stops.
     seed
-        Varies the walk and the noise of the nose and the camera, never the room.
+        Varies the walk, slip and the noise of the nose and the camera, never the room.
+    start, dt
+        Of a policy: its first pose, drawn from free space when None, and the time from a view to the next, s,
+        0.2 when None. A motion has its own.
     out
         Folder to stream to, 256 views at a time. The same call after a kill goes on where it stopped and ends
         with the same bits, on every x86-64 processor with AVX2 and the same versions (a `Chemotaxis` only in
         portable arithmetic: its way hangs on the last digit of a smell); a recording that is whole is only
-        opened. None keeps all in memory.
+        opened. What a policy remembers dies with it: after a kill it starts over, and only where there is no
+        recording yet. None keeps all in memory.
     progress
         Whether to show a bar on stderr.
 
     Raises
     ------
     ArenaError
-        For a count or seed out of range, a body that does not fit, or an `out` that holds something else.
+        For a count or seed out of range, a body that does not fit, commands that mean nothing, or an `out`
+        that holds something else.
     """
-    if views is None:
-        views = motion.default_views
-    if (views is not None and views < 1) or seed < 0:
-        raise ArenaError(f"views is {views} and seed is {seed}; give at least one view and no negative seed")
-    parts: dict[str, Any] = {"camera": camera, "motion": motion, "nose": nose, "body": body}
-    described = {name: {"kind": type(part).__name__, **part.model_dump()} for name, part in parts.items()}
-    # As it will read back from JSON, where tuples are lists.
-    described = json.loads(json.dumps(described))
-    attributes = {"arena": arena.to_toml(), **described, "views": views, "seed": seed}
+    parts = {"camera": camera, "nose": nose, "body": body}
+    told = {"arena": arena.to_toml(), "seed": seed, **_described(parts)}
     path = None if out is None else Path(out)
+    if not isinstance(motion, Motion):
+        _check_numbers(views, seed)
+        dt, name = DT if dt is None else dt, getattr(motion, "__name__", type(motion).__name__)
+        told |= {"motion": {"kind": name, "start": start, "dt": dt}, "walk": {}, "origin": origin()}
+        rng = np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0])
+        one = Explorers(arena, camera, nose=nose, body=body, count=1)
+        one.begin(np.zeros(1, int), [random_start(arena, body, rng) if start is None else start], [rng])
+        steps = islice(act_and_look(one, of_one(motion), dt), views)
+        counted = tqdm(steps, total=views, unit="view", disable=not progress)
+        return write_down(iter(counted), dt, path, (camera.height, camera.width, 3), told)
+    if start is not None or dt is not None:
+        raise ArenaError(f"start and dt are of a policy; {type(motion).__name__} has its own")
+    views = motion.default_views if views is None else views
+    _check_numbers(views, seed)
+    attributes = told | _described({"motion": motion}) | {"views": views}
     begun = None if path is None else _begun(path, attributes)
     if path is not None and begun is not None and not begun.missing:
         return Recording.open(path)
@@ -108,6 +112,7 @@ def explore(
         "times": walk.times,
         "odours": nose.smell(arena.odours.concentration(walk.poses[:, :2]), walk.times, nose_rng),
         "poses": walk.poses,
+        **({} if walk.commands is None else {"commands": walk.commands}),
     }
     attributes |= {"walk": dict(walk.notes), "origin": origin()}
     if path is None:
@@ -125,6 +130,18 @@ def explore(
             "goes on from there"
         ) from None
     return Recording.open(path)
+
+
+def _check_numbers(views: int | None, seed: int) -> None:
+    if (views is not None and views < 1) or seed < 0:
+        raise ArenaError(f"views is {views} and seed is {seed}; give at least one view and no negative seed")
+
+
+def _described(parts: Mapping[str, Any]) -> dict[str, Any]:
+    """Describe the parts of an exploration as they will read back from JSON, where tuples are lists."""
+    described = {name: {"kind": type(part).__name__, **part.model_dump()} for name, part in parts.items()}
+    read_back: dict[str, Any] = json.loads(json.dumps(described))
+    return read_back
 
 
 def _begun(path: Path, wanted: dict[str, Any]) -> storage.Stored | None:

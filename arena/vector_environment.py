@@ -12,12 +12,10 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
-from arena.angles import wrap_angle
-from arena.bodies.rolling import CONTACT, roll_all
-from arena.environment import Explorer, Observation, OdourClimbed
+from arena.environment import Explorer, OdourClimbed
 from arena.errors import ArenaError
+from arena.explorers import Explorers, Observation
 from arena.rooms.arena import Arena
-from arena.smell.nose import Sniffers
 
 Truth = dict[str, Any]
 
@@ -73,12 +71,11 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._most = math.inf if max_episode_steps is None else max_episode_steps
-        self._states = np.full((num_envs, 6), math.nan)
+        one = self.explorer
+        self._explorers = Explorers(one.arena, one.camera, nose=one.nose, body=one.body, count=num_envs)
         self._steps = np.zeros(num_envs, int)
-        self._times = np.zeros(num_envs)
         self._done = np.zeros(num_envs, bool)
         self._rngs: list[Any] = [None] * num_envs
-        self._sniffers = Sniffers(self.explorer.nose, num_envs, len(self.explorer.arena.sources))
         self._sensed: Observation = {}
 
     def reset(
@@ -91,10 +88,7 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         if seeds is not None and len(seeds) != self.num_envs:
             raise ArenaError(f"there are {len(seeds)} seeds for {self.num_envs} explorers; give one each")
         self._begin(which, options, seeds)
-        if not self._sensed:
-            spaces = self.observation_space.spaces  # type: ignore[attr-defined]
-            self._sensed = {name: np.zeros(space.shape, space.dtype) for name, space in spaces.items()}
-        self._sense_again(which)
+        self._sensed = self._explorers.sense(which)
         return self._sensed, self._truth(which)
 
     def step(self, actions: np.ndarray) -> tuple[Observation, np.ndarray, np.ndarray, np.ndarray, Truth]:
@@ -111,7 +105,7 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         again = self._done & (mode is AutoresetMode.NEXT_STEP)
         self._move(np.flatnonzero(~again), actions)
         self._begin(np.flatnonzero(again), {})
-        before, self._sensed = self._sensed, self._sense(everyone)
+        before, self._sensed = self._sensed, self._explorers.sense(everyone)
         rewards = np.where(again, 0.0, self._judge(before, self._sensed))
         truncated = self._steps >= self._most
         self._done = truncated.copy()
@@ -122,14 +116,14 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
                 last[k] = _row(self._sensed, k)
             final = {"final_obs": last, "final_info": self._truth(ended)}
             self._begin(ended, {})
-            self._sense_again(ended)
+            self._sensed = self._explorers.sense(ended)
             info = {**self._truth(everyone), **final, **{f"_{name}": truncated.copy() for name in final}}
         return self._sensed, rewards, np.zeros(self.num_envs, bool), truncated, info
 
     def _begin(
         self, which: np.ndarray, options: Mapping[str, Any], seeds: Sequence[int | None] | None = None
     ) -> None:
-        one = self.explorer
+        one, starts = self.explorer, []
         for k in which.tolist():
             seed = None if seeds is None else seeds[k]
             # The explorer lends itself: what it draws at a reset is what it would draw alone.
@@ -137,45 +131,21 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
                 one.np_random = self._rngs[k]
             else:
                 gymnasium.Env.reset(one, seed=seed)
-            self._rngs[k], start = one.np_random, one.starting_pose(options)
-            one.body.place(one.arena, start)
-            self._states[k] = (*start, 0.0, 0.0, math.nan)
-        self._steps[which], self._times[which], self._done[which] = 0, 0.0, False
-        self._sniffers.begin(which)
+            self._rngs[k] = one.np_random
+            starts.append(one.starting_pose(options))
+        self._explorers.begin(which, starts, [self._rngs[k] for k in which.tolist()])
+        self._steps[which], self._done[which] = 0, False
 
     def _move(self, which: np.ndarray, actions: np.ndarray) -> None:
-        one, body = self.explorer, self.explorer.body
-        commands = actions[which] * [body.max_speed, body.max_turn]
+        one, body, actions = self.explorer, self.explorer.body, actions[which]
+        commands = body.velocities(actions)
         if one.control == "wheels":
-            wheels = (actions[which] * body.max_speed).tolist()
+            wheels = (actions * body.max_speed).tolist()
             commands = np.array([body.from_wheels(left, right) for left, right in wheels]).reshape(-1, 2)
         if not np.isfinite(commands).all():
             raise ArenaError("some actions are not finite; give numbers between -1 and 1")
-        states = self._states[which]
-        roll_all(states, one.arena.edges, body.limits, commands, one.dt)
-        self._states[which] = states
+        self._explorers.act(which, commands, one.dt)
         self._steps[which] += 1
-        self._times[which] += one.dt
-
-    def _sense(self, which: np.ndarray) -> Observation:
-        """Look, and smell."""
-        one, poses = self.explorer, self._poses(which)
-        rngs = [self._rngs[k] for k in which.tolist()]
-        # Without noise nothing is drawn, whosever generator it is.
-        if rngs and not getattr(one.camera, "noise", 1.0):
-            view = one.camera.render(one.arena, poses, rng=rngs[0])
-        else:
-            each = zip(poses[:, None], rngs, strict=True)
-            seen = [one.camera.render(one.arena, pose, rng=rng)[0] for pose, rng in each]
-            view = np.array(seen, np.uint8).reshape(len(seen), one.camera.height, one.camera.width, 3)
-        concentrations = one.arena.odours.concentration(poses[:, :2])
-        return {"view": view, "odour": self._sniffers.smell(which, concentrations, self._times[which], rngs)}
-
-    def _sense_again(self, which: np.ndarray) -> None:
-        """Let some sense anew; what was given of the others is left as it is."""
-        fresh, self._sensed = self._sense(which), {key: old.copy() for key, old in self._sensed.items()}
-        for name, values in fresh.items():
-            self._sensed[name][which] = values
 
     def _judge(self, before: Observation, after: Observation) -> np.ndarray:
         reward = self.explorer.reward
@@ -183,16 +153,11 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
             return reward.of_all(before, after)
         return np.array([reward(_row(before, k), _row(after, k)) for k in range(self.num_envs)])
 
-    def _poses(self, which: np.ndarray) -> np.ndarray:
-        states = self._states[which]
-        return np.column_stack([states[:, :2], wrap_angle(states[:, 2])])
-
     def _truth(self, which: np.ndarray) -> Truth:
         there = np.zeros(self.num_envs, bool)
         there[which] = True
         poses, touched = np.zeros((self.num_envs, 3)), np.zeros(self.num_envs, bool)
-        poses[which] = self._poses(which)
-        touched[which] = np.isfinite(self._states[which, CONTACT])
+        poses[which], touched[which] = self._explorers.poses(which), self._explorers.touched(which)
         return {"pose": poses, "_pose": there, "touched": touched, "_touched": there.copy()}
 
 

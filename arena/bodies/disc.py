@@ -4,16 +4,20 @@ import math
 from typing import Annotated
 
 import numpy as np
+from jaxtyping import Float
 from pydantic import Field
 
 from arena.angles import wrap_angle
+from arena.bodies.motors import Motors
 from arena.bodies.rolling import Limits, look_ahead, roll
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
-from arena.settings import Settings
+from arena.settings import Settings, Share
 
 TOLERANCE = 1e-3
 """How far (m) a start may reach beyond free space; a step never does by more than `rolling.CLOSE`."""
+
+_Gain = Annotated[float, Field(gt=0, le=10)]
 
 Pose = tuple[float, float, float]
 """x and y in m, heading in rad."""
@@ -41,8 +45,10 @@ class Drive:
     turn: float = 0.0
     contact: float | None = None
 
-    def __init__(self, body: "Disc", arena: Arena, pose: Pose) -> None:
+    def __init__(self, body: "Disc", arena: Arena, pose: Pose, rng: np.random.Generator | None) -> None:
         self.body = body
+        self._motors = Motors(body, arena, 1) if body.disturbed else None
+        self._rngs = [] if rng is None else [rng]
         self._state = np.array([*pose, 0.0, 0.0, math.nan])
         self._edges, self._limits = arena.edges, body.limits
         self._x, self._y, self._heading = self._state[:3].tolist()
@@ -72,7 +78,10 @@ class Drive:
                 f"cannot step at speed {speed} m/s and turn {turn} rad/s for {dt} s; "
                 "give finite numbers and dt > 0"
             )
-        roll(self._state, self._edges, self._limits, speed, turn, dt)
+        if self._motors is None:
+            roll(self._state, self._edges, self._limits, (1.0, 1.0), speed, turn, dt)
+        else:
+            self._motors.move(self._state[None], np.zeros(1, int), np.array([[speed, turn]]), dt, self._rngs)
         self._x, self._y, self._heading, self.speed, self.turn, away = self._state.tolist()
         self.contact = None if math.isnan(away) else away
         return self.contact is not None
@@ -98,6 +107,15 @@ class Disc(Settings):
         m/s² and rad/s²; None obeys at once. The Turtlebot 2 is usually driven at 1 m/s² and 2 rad/s².
     wheel_base
         Distance between the wheels, m.
+    slip
+        Each wheel rolls (1 + `slip` ξ) times as far as it should, ξ standard normal, drawn anew every step.
+    wheel_gains
+        What the left and the right wheel roll over what they should; 0.7 is a weak motor or a small wheel.
+    swapped
+        Whether each wheel is wired to the other's command: the body turns the wrong way.
+    delay
+        Time from a command to its effect, s. Until then the one before it is obeyed, and the first finds it
+        at rest.
 
     Raises
     ------
@@ -111,12 +129,31 @@ class Disc(Settings):
     max_acceleration: Annotated[float, Field(gt=0, le=1e6)] | None = None
     max_turn_acceleration: Annotated[float, Field(gt=0, le=1e6)] | None = None
     wheel_base: Annotated[float, Field(gt=0, le=1e3)] = 0.23
+    slip: Share = 0.0
+    wheel_gains: tuple[_Gain, _Gain] = (1.0, 1.0)
+    swapped: bool = False
+    delay: Annotated[float, Field(ge=0, le=10)] = 0.0
+
+    @property
+    def disturbed(self) -> bool:
+        """Whether it does anything but what it is told."""
+        return bool(self.slip or self.wheel_gains != (1.0, 1.0) or self.swapped or self.delay)
 
     @property
     def limits(self) -> Limits:
         """What it can do at most, as the kernels want it."""
         accelerations = (self.max_acceleration or math.inf, self.max_turn_acceleration or math.inf)
-        return self.radius, self.max_speed, self.max_turn, *accelerations
+        return self.radius, self.max_speed, self.max_turn, *accelerations, *self.lags, self.wheel_base
+
+    @property
+    def lags(self) -> tuple[float, float]:
+        """Time constants of speed and turn rate, s: zero, it has no mass."""
+        return 0.0, 0.0
+
+    def velocities(self, commands: Float[np.ndarray, "... 2"]) -> Float[np.ndarray, "... 2"]:
+        """Turn commands in [−1, 1] into speed (m/s) and turn rate (rad/s)."""
+        asked: np.ndarray = commands * [self.max_speed, self.max_turn]
+        return asked
 
     def from_wheels(self, left: float, right: float) -> tuple[float, float]:
         """Turn the speeds of the wheels' rims (m/s) into the speed (m/s) and turn rate (rad/s) of the body.
@@ -127,14 +164,16 @@ class Disc(Settings):
         """
         return 0.5 * (left + right), (right - left) / self.wheel_base
 
-    def place(self, arena: Arena, pose: Pose) -> Drive:
-        """Put the body into an arena.
+    def place(self, arena: Arena, pose: Pose, rng: np.random.Generator | None = None) -> Drive:
+        """Put the body into an arena; its slip is drawn from the generator, and without slip nothing is.
 
         Raises
         ------
         ArenaError
-            For a pose that is not finite or where the body touches something.
+            For a pose that is not finite or where the body touches something, and slip without a generator.
         """
+        if self.slip and rng is None:
+            raise ArenaError(f"the wheels slip by {self.slip:g}; give `rng`, a numpy.random.Generator")
         if not np.isfinite(pose).all():
             raise ArenaError(f"the start {pose} is not finite; give x, y (m) and heading (rad)")
         if not arena.is_free(np.array([pose[:2]], dtype=float), max(0.0, self.radius - TOLERANCE))[0]:
@@ -142,4 +181,4 @@ class Disc(Settings):
                 f"a body of radius {self.radius:g} m cannot start at ({pose[0]:g}, {pose[1]:g}) m: it would "
                 "touch a wall or leave the platform; choose a start in free space"
             )
-        return Drive(self, arena, pose)
+        return Drive(self, arena, pose, rng)

@@ -20,17 +20,23 @@ from arena.kernels import kernel
 X, Y, HEADING, SPEED, TURN, CONTACT = range(6)
 """Columns of a state."""
 
-Limits = tuple[float, float, float, float, float]
-"""Radius (m), most speed (m/s) and turn rate (rad/s), and accelerations (m/s², rad/s²) or infinity."""
+Limits = tuple[float, float, float, float, float, float, float, float]
+"""Radius (m), most speed (m/s) and turn rate (rad/s), accelerations (m/s², rad/s²) or infinity, time
+constants of speed and turn rate (s), zero for a body without mass, and the wheels' distance (m)."""
 
 CLOSE = 1e-6
 """How far a body may overlap an edge, m."""
+COAST = 0.01
+"""Longest part of a step in which the speed of a body with mass is taken as even, s."""
 
 
 @kernel()
 @typing.no_type_check
-def _approach(now: float, goal: float, limit: float, dt: float) -> tuple[float, float]:
-    """Change by no more than limit a second towards the goal: give what is reached in dt, and the mean."""
+def _approach(now: float, goal: float, limit: float, lag: float, dt: float) -> tuple[float, float]:
+    """Change by no more than limit a second, or with a lag (s): give what is reached in dt, and the mean."""
+    if lag > 0.0:
+        left = (now - goal) * math.exp(-dt / lag)
+        return goal + left, goal - (now - goal) * math.expm1(-dt / lag) * lag / dt
     if limit == math.inf:
         return goal, goal
     change = goal - now
@@ -88,20 +94,8 @@ def _push_out(state: np.ndarray, dx: float, dy: float, radius: float, edges: np.
 
 @kernel()
 @typing.no_type_check
-def roll(
-    state: Float[np.ndarray, "6"],
-    edges: Float[np.ndarray, "edges 2 2"],
-    limits: Limits,
-    speed: float,
-    turn: float,
-    dt: float,
-) -> None:
-    """Move a body for dt (s) towards a speed (m/s) and turn rate (rad/s)."""
-    radius, max_speed, max_turn, acceleration, turn_acceleration = limits
-    speed, turn = max(-max_speed, min(max_speed, speed)), max(-max_turn, min(max_turn, turn))
-    state[SPEED], speed = _approach(state[SPEED], speed, acceleration, dt)
-    state[TURN], turn = _approach(state[TURN], turn, turn_acceleration, dt)
-    state[CONTACT] = math.nan
+def _go(state: np.ndarray, edges: np.ndarray, radius: float, speed: float, turn: float, dt: float) -> None:
+    """Move for dt (s) at an even speed and turn rate."""
     # No part of a step is longer than a fifth of the radius, so that none passes a wall.
     parts = max(1, math.ceil(5 * abs(speed) * dt / radius))
     dt /= parts
@@ -117,16 +111,56 @@ def roll(
 
 @kernel()
 @typing.no_type_check
+def roll(
+    state: Float[np.ndarray, "6"],
+    edges: Float[np.ndarray, "edges 2 2"],
+    limits: Limits,
+    gains: tuple[float, float],
+    speed: float,
+    turn: float,
+    dt: float,
+) -> None:
+    """Move a body for dt (s) towards a speed (m/s) and turn rate (rad/s).
+
+    Gains are how far the left and the right wheel roll over how far they should.
+    """
+    radius, max_speed, max_turn, acceleration, turn_acceleration, lag, turn_lag, base = limits
+    speed, turn = max(-max_speed, min(max_speed, speed)), max(-max_turn, min(max_turn, turn))
+    parts = max(1, math.ceil(dt / COAST)) if lag > 0.0 else 1
+    dt /= parts
+    touched = math.nan
+    for _ in range(parts):
+        state[SPEED], forward = _approach(state[SPEED], speed, acceleration, lag, dt)
+        state[TURN], veer = _approach(state[TURN], turn, turn_acceleration, turn_lag, dt)
+        if gains[0] != 1.0 or gains[1] != 1.0:
+            left, right = gains[0] * (forward - 0.5 * base * veer), gains[1] * (forward + 0.5 * base * veer)
+            forward, veer = 0.5 * (left + right), (right - left) / base
+        state[CONTACT] = math.nan
+        x, y, course = state[X], state[Y], state[HEADING] + 0.5 * veer * dt
+        _go(state, edges, radius, forward, veer, dt)
+        if not math.isnan(state[CONTACT]):
+            touched = state[CONTACT]
+            if lag > 0.0:
+                # Wheels slip at a wall and turn on; what has mass keeps the speed that the wall leaves it.
+                gone = ((state[X] - x) * math.cos(course) + (state[Y] - y) * math.sin(course)) / dt
+                state[SPEED] = max(min(state[SPEED], 0.0), min(gone, max(state[SPEED], 0.0)))
+    state[CONTACT] = touched
+
+
+@kernel()
+@typing.no_type_check
 def roll_all(
     states: Float[np.ndarray, "bodies 6"],
     edges: Float[np.ndarray, "edges 2 2"],
     limits: Limits,
+    gains: Float[np.ndarray, "bodies 2"],
     commands: Float[np.ndarray, "bodies 2"],
     dt: float,
 ) -> None:
     """Move bodies of one kind that pass through each other, each by its own speed and turn rate."""
     for k in range(len(states)):
-        roll(states[k], edges, limits, commands[k, 0], commands[k, 1], dt)
+        wheels = gains[k, 0], gains[k, 1]
+        roll(states[k], edges, limits, wheels, commands[k, 0], commands[k, 1], dt)
 
 
 @kernel()

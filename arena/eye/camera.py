@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 from typing import Annotated, Literal
@@ -115,7 +115,7 @@ class Camera(Settings):
         poses: Poses,
         *,
         out: Images | None = None,
-        rng: np.random.Generator | None = None,
+        rng: np.random.Generator | Sequence[np.random.Generator] | None = None,
     ) -> Images:
         """Paint what the camera sees from each pose (m, m, rad).
 
@@ -127,7 +127,8 @@ class Camera(Settings):
         out
             Buffer to paint into, C-contiguous and writeable; it is also returned.
         rng
-            Where the sensor noise comes from; needed only if the camera has `noise`.
+            Where the sensor noise comes from, or one generator for each view; needed only if the camera has
+            `noise`.
 
         Raises
         ------
@@ -152,8 +153,9 @@ class Camera(Settings):
         rows = out.reshape(*shape[:2], 3 * self.width)
         _in_threads(lambda at: render.render(poses[at], *scene, rows[at]), len(poses))
         if rng is not None and self.noise:
-            for image in out:
-                grain = rng.standard_normal(image.shape, dtype=np.float32)
+            each = [rng] * len(out) if isinstance(rng, np.random.Generator) else rng
+            for image, its in zip(out, each, strict=True):
+                grain = its.standard_normal(image.shape, dtype=np.float32)
                 image[:] = np.clip(np.rint(image + 255 * self.noise * grain), 0, 255)
         return out
 

@@ -19,12 +19,16 @@ class Walk(NamedTuple):
     """x, y in m and heading in rad, in (−π, π]."""
     notes: Mapping[str, object] = {}
     """What else there is to know about this walk, as far as JSON can say; `explore` keeps it."""
+    commands: Float[np.ndarray, "views 2"] | None = None
+    """What was commanded from each view to the next, in [−1, 1], by a motion that gives one a view."""
 
 
 def join(strides: Iterable[Walk]) -> Walk:
     """Put the parts of a walk together; the last has the notes."""
-    times, poses, notes = zip(*strides, strict=True)
-    return Walk(np.concatenate(times), np.concatenate(poses), notes[-1])
+    parts = list(strides)
+    given = [part.commands for part in parts if part.commands is not None]
+    times, poses = (np.concatenate([part[k] for part in parts]) for k in range(2))
+    return Walk(times, poses, parts[-1].notes, np.concatenate(given) if given else None)
 
 
 @runtime_checkable

@@ -88,7 +88,7 @@ class Brownian(Striding, Settings):
         ArenaError
             When the body does not fit, or the start is not free.
         """
-        drive = body.place(arena, self.start or random_start(arena, body, rng))
+        drive = body.place(arena, self.start or random_start(arena, body, rng), rng)
         return sample_views(self, drive, self._steps(drive, rng), views or self.default_views)
 
     def _steps(self, drive: Drive, rng: np.random.Generator) -> Iterator[StepLength]:

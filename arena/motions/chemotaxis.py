@@ -84,7 +84,7 @@ class Chemotaxis(Settings):
                 f"arena {arena.name!r} has {len(arena.sources)} odour sources, so no odour {self.odorant}; "
                 "count them from 0"
             )
-        drive = body.place(arena, self.start or random_start(arena, body, rng))
+        drive = body.place(arena, self.start or random_start(arena, body, rng), rng)
         stays: list[tuple[float, int, int]] = []
         steps = _counted(self._legs(drive, arena.odours, rng), stays)
         walk = join(sample_views(self, drive, steps, views or self.default_views))

@@ -68,7 +68,7 @@ class Cyclic(Striding, Settings):
         """
         views = views or self.default_views
         start, end, room = corridor(arena, body, self.width / 2, self.ends)
-        drive = body.place(arena, (*start, rng.uniform(-np.pi, np.pi)))
+        drive = body.place(arena, (*start, rng.uniform(-np.pi, np.pi)), rng)
         spins = max(1, round(views * self.view_every_rad / (2 * np.pi + FACING) / self.passes))
         steps = self._zigzag(drive, self._corners(start, end, room, spins, rng))
         return sample_views(self, drive, steps, views)

@@ -56,7 +56,7 @@ class Rotation(Settings):
         """
         views = views or self.default_views
         x, y = self.position or _middle(arena, body)
-        drive = body.place(arena, (x, y, rng.uniform(-np.pi, np.pi)))
+        drive = body.place(arena, (x, y, rng.uniform(-np.pi, np.pi)), rng)
         goals = 2 * np.pi * self.turns * (np.arange(views) + self.jitter * rng.random(views)) / views
         turn_rate = min(self.turn_rate, body.max_turn)
         times, poses = np.empty(views), np.empty((views, 3))
@@ -66,7 +66,8 @@ class Rotation(Settings):
             while goal - turned > 1e-9:
                 before, dt = drive.pose[2], min(STEP, 1 / turn_rate, (goal - turned) / turn_rate)
                 drive.step(0.0, turn_rate, dt)
-                turned += signed_turn(before, drive.pose[2])
+                # To whichever side: wheels may be swapped.
+                turned += abs(signed_turn(before, drive.pose[2]))
                 now += dt
             times[view], poses[view] = now, drive.pose
         return Walk(times, poses)

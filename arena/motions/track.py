@@ -59,7 +59,7 @@ class Track(Striding, Settings):
             When the body does not fit, or something is in the way.
         """
         here, there, _ = corridor(arena, body, ROOM, self.ends)
-        drive = body.place(arena, (*here, math.atan2(there[1] - here[1], there[0] - here[0])))
+        drive = body.place(arena, (*here, math.atan2(there[1] - here[1], there[0] - here[0])), rng)
         return sample_views(self, drive, self._runs(drive, here, there, rng), views or self.default_views)
 
     def _runs(

@@ -13,6 +13,9 @@ from arena.recordings import storage
 from arena.recordings.sharding import shards, write_shards
 from arena.recordings.storage import StoredViews
 
+_FIELDS = ("times", "odours", "poses", "commands", "joints")
+"""Arrays by the names that they have on disk, too."""
+
 Images = UInt8[np.ndarray, "views height width 3"]
 
 
@@ -30,6 +33,9 @@ class Recording:
         Smelt concentrations, all > 0. None when nothing was smelt.
     poses
         x, y (m) and heading (rad): ground truth, for scoring only. None when unknown or taken away.
+    commands
+        What was commanded from each view to the next, in [−1, 1]; NaN where the explorer stopped. No truth:
+        the animal knows it. None for motions that do not tell.
     joints
         Angles of the body's joints (rad). None for a body without any.
     signals
@@ -47,6 +53,7 @@ class Recording:
     times: Float64[np.ndarray, " views"]
     odours: Float32[np.ndarray, "views odorants"] | None = None
     poses: Float64[np.ndarray, "views 3"] | None = None
+    commands: Float64[np.ndarray, "views commands"] | None = None
     joints: Float64[np.ndarray, "views joints"] | None = None
     signals: Mapping[str, Shaped[np.ndarray, "views ..."]] = field(default_factory=dict)
     attributes: Mapping[str, Any] = field(default_factory=dict)
@@ -65,7 +72,7 @@ class Recording:
         return replace(self, views=self.views[key], **_fields(chosen))
 
     def require(self, name: str) -> np.ndarray:
-        """Give an array that a recording may lack: `odours`, `poses`, `joints` or `signals/NAME`.
+        """Give an array that a recording may lack: `odours`, `poses`, `commands`, `joints`, `signals/NAME`.
 
         Raises
         ------
@@ -120,7 +127,7 @@ class Recording:
     @property
     def _columns(self) -> dict[str, np.ndarray]:
         """All arrays that are there but the views, by their names on disk."""
-        columns = {name: getattr(self, name) for name in ("times", "odours", "poses", "joints")}
+        columns = {name: getattr(self, name) for name in _FIELDS}
         signals = {f"signals/{name}": values for name, values in self.signals.items()}
         return {name: values for name, values in columns.items() if values is not None} | signals
 
@@ -140,6 +147,7 @@ def _check(views: np.ndarray | StoredViews, columns: Mapping[str, np.ndarray]) -
         "times": ("float64", (count,)),
         "odours": ("float32", (count, None)),
         "poses": ("float64", (count, 3)),
+        "commands": ("float64", (count, None)),
         "joints": ("float64", (count, None)),
     }
     for name, array in {"times": np.empty(0), "views": views, **columns}.items():
@@ -162,7 +170,8 @@ def _check(views: np.ndarray | StoredViews, columns: Mapping[str, np.ndarray]) -
                 f"for {count} views it must be {dtype} of shape ({told})"
             )
     for name, values in columns.items():
-        if not np.isfinite(values).all():
+        stopped = np.isnan(values) if name == "commands" else False
+        if not (np.isfinite(values) | stopped).all():
             raise ArenaError(f"{name} has NaN or infinite values; leave those views out")
     if not (columns.get("odours", np.ones(0)) > 0).all():
         raise ArenaError("odours has values that are not positive; a concentration must be > 0")

@@ -91,15 +91,22 @@ def new_folder(
     ArenaError
         When there is something at `path`, or the folder cannot be written.
     """
-    own = {"version": VERSION, "arrays": list(columns)}
     with atomic_write(path, ArenaError, overwrite=False) as folder:
-        group = zarr.create_group(folder, zarr_format=3, attributes={**attributes, **own})
-        # By default zeros would not be written at all, and could not be told from a file that was lost.
-        with zarr.config.set({"array.write_empty_chunks": True}):
-            for name, values in columns.items():
-                group.create_array(name, **_described(name, values.shape, str(values.dtype)))[...] = values
-        group.create_array("views", **_described("views", shape, "uint8"))
+        describe(folder, shape, columns, attributes)
         yield folder
+
+
+def describe(
+    folder: Path, shape: tuple[int, ...], columns: Mapping[str, np.ndarray], attributes: Mapping[str, Any]
+) -> None:
+    """Write all of a recording but the images into a folder, which may hold these already."""
+    own = {"version": VERSION, "arrays": list(columns)}
+    group = zarr.create_group(folder, zarr_format=3, attributes={**attributes, **own})
+    # By default zeros would not be written at all, and could not be told from a file that was lost.
+    with zarr.config.set({"array.write_empty_chunks": True}):
+        for name, values in columns.items():
+            group.create_array(name, **_described(name, values.shape, str(values.dtype)))[...] = values
+    group.create_array("views", **_described("views", shape, "uint8"))
 
 
 def load(path: Path) -> Stored:

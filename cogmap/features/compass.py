@@ -8,7 +8,7 @@ from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 from scipy.sparse.linalg import cg
 
 from arena.angles import wrap_angle
-from cogmap.features.strips import FREQUENCIES, Strips
+from cogmap.features.strips import FREQUENCIES
 from cogmap.graph.neighbour_graph import edge_differences
 
 COLUMNS = 2 * (FREQUENCIES - 1)
@@ -21,8 +21,12 @@ OUTLIER = 0.03
 _f = np.arange(FREQUENCIES, dtype=np.float32)
 
 
+Series = Complex64[np.ndarray, "views rows frequencies"]
+"""Fourier series of the brightness of panoramas, `strips(views).grey`."""
+
+
 def turns(
-    strips: Strips, pairs: Int[np.ndarray, "pairs 2"], others: Strips | None = None
+    grey: Series, pairs: Int[np.ndarray, "pairs 2"], others: Series | None = None
 ) -> Float[np.ndarray, "pairs"]:
     r"""Give the heading of the first view of each pair minus that of the second, rad.
 
@@ -38,15 +42,35 @@ def turns(
 
     Parameters
     ----------
-    strips, pairs, others
-        The first of a pair is a row of `strips`, the second one of `others`, or of `strips` when None.
+    grey, pairs, others
+        The first of a pair is a row of `grey`, the second one of `others`, or of `grey` when None.
     """
-    seconds = strips if others is None else others
+    seconds = grey if others is None else others
     found = [
-        _turns(strips.grey[block[:, 0]], seconds.grey[block[:, 1]])
+        _turns(grey[block[:, 0]], seconds[block[:, 1]])
         for block in np.split(pairs, range(BLOCK, len(pairs), BLOCK))
     ]
     return np.concatenate(found)
+
+
+def misfit(
+    grey: Series,
+    pairs: Int[np.ndarray, "pairs 2"],
+    turned: Float[np.ndarray, "pairs"],
+    others: Series | None = None,
+) -> Float[np.ndarray, "pairs"]:
+    """Give how unlike two panoramas are once the second is turned to the first, in [0, 2].
+
+    It is Σ |difference|² / Σ (|first|² + |second|²) over all but their means, 1 for what has nothing in common.
+    """
+    seconds = grey if others is None else others
+    found = []
+    for rows in np.split(np.arange(len(pairs)), range(BLOCK, len(pairs), BLOCK)):
+        first, second = grey[pairs[rows, 0], :, 1:], seconds[pairs[rows, 1], :, 1:]
+        second = second * np.exp(-1j * turned[rows, None, None].astype(np.float32) * _f[1:])
+        power = sum(np.square(np.abs(part)).sum(axis=(1, 2)) for part in (first, second))
+        found.append(np.square(np.abs(first - second)).sum(axis=(1, 2)) / (power + 1e-12))
+    return np.concatenate(found).astype(np.float64)
 
 
 def _turns(

@@ -1,21 +1,31 @@
 """Panorama codes: points whose distance is that of the poses they were taken from, up to scale."""
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.decomposition import PCA
 from sklearn.utils.validation import check_is_fitted
 
 from cogmap.errors import CogmapError
-from cogmap.features.compass import synchronise_headings, turns
-from cogmap.features.strips import strips
+from cogmap.features.compass import misfit, synchronise_headings, turns
+from cogmap.features.strips import Strips, strips
 from cogmap.graph.knn import nearest_points
 from cogmap.graph.neighbour_graph import neighbour_graph
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
+
+
+class Compared(NamedTuple):
+    """What known views tell of others."""
+
+    headings: Float[np.ndarray, "views"]
+    """rad."""
+    misfit: Float[np.ndarray, "views"]
+    """Of the known one that fits best (`compass.misfit`)."""
 
 
 class PanoramaCode(TransformerMixin, BaseEstimator):
@@ -40,6 +50,8 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
     ----------
     headings_ : array (views,)
         θ in rad, in a frame of their own.
+    places_ : array (views, components)
+        z.
 
     Raises
     ------
@@ -61,37 +73,81 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
     def fit_transform(self, X: Any, y: object = None) -> Float[np.ndarray, "views features"]:
         """Learn components and north from panoramas, and give the features of these."""
         del y
-        self._train = strips(X)
-        count = len(self._train.turn_invariant)
-        if not np.ptp(self._train.turn_invariant, axis=0).any():
+        seen = strips(X)
+        count = len(seen.turn_invariant)
+        if not np.ptp(seen.turn_invariant, axis=0).any():
             raise CogmapError(f"{count} panoramas are all alike; explore more than one place")
         components = min(checked_count("components", self.components), count)
         neighbours = min(checked_count("neighbours", self.neighbours), count - 1)
         with one_thread():
             # 4,000 views are enough for principal components.
-            sample = self._train.turn_invariant[:: -(-count // 4000)]
+            sample = seen.turn_invariant[:: -(-count // 4000)]
             components = min(components, *sample.shape)
-            self._axes = PCA(components, svd_solver="covariance_eigh").fit(sample)
-            found = self._axes.transform(self._train.turn_invariant).astype(np.float64)
-            self._scale = 1 / np.sqrt(found.var(axis=0).sum())
-            self._places = self._scale * found
-            graph = neighbour_graph(self._places, neighbours)
+            axes = PCA(components, svd_solver="covariance_eigh").fit(sample)
+            found = axes.transform(seen.turn_invariant).astype(np.float64)
+            scale = 1 / np.sqrt(found.var(axis=0).sum())
+            self.places_ = scale * found
+            self._mean, self._axes, self._scale, self._grey = axes.mean_, axes.components_, scale, seen.grey
+            graph = neighbour_graph(self.places_, neighbours)
             edges = np.column_stack(sp.triu(graph, 1).nonzero())
-            self.headings_ = synchronise_headings(graph, edges, turns(self._train, edges))
-        return self._features(self._places, self.headings_)
+            self.headings_ = synchronise_headings(graph, edges, turns(seen.grey, edges))
+        return self._features(self.places_, self.headings_)
 
     def transform(self, X: Any) -> Float[np.ndarray, "views features"]:
         """Give the features of other panoramas."""
         check_is_fitted(self)
         test = strips(X)
+        places = self.place(test)
+        # The five nearest known views tell the heading of another.
+        nearest = nearest_points(self.places_, min(5, len(self.places_)), queries=places).indices
+        return self._features(places, self.heading(test, nearest))
+
+    def place(self, seen: Strips) -> Float[np.ndarray, "views components"]:
+        """Give z of other panoramas."""
         with one_thread():
-            places = self._scale * self._axes.transform(test.turn_invariant).astype(np.float64)
-            # The five nearest known views tell the heading of another.
-            nearest = nearest_points(self._places, min(5, len(self._places)), queries=places).indices
-            pairs = np.column_stack([np.repeat(np.arange(len(places)), nearest.shape[1]), nearest.ravel()])
-            label = self.headings_[pairs[:, 1]] + turns(test, pairs, self._train)
-        headings = np.angle(np.exp(1j * label).reshape(nearest.shape).sum(axis=1))
-        return self._features(places, headings)
+            found = (seen.turn_invariant - self._mean) @ self._axes.T
+        return np.asarray(self._scale * found.astype(np.float64))
+
+    def heading(self, seen: Strips, nearest: Int[np.ndarray, "views near"]) -> Float[np.ndarray, "views"]:
+        """Give θ of other panoramas, rad, as the mean of what these known views near each tell of it."""
+        return self.compare(seen, nearest).headings
+
+    def compare(self, seen: Strips, nearest: Int[np.ndarray, "views near"]) -> Compared:
+        """Turn known views to other panoramas, and see how well they fit."""
+        pairs = np.column_stack([np.repeat(np.arange(len(nearest)), nearest.shape[1]), nearest.ravel()])
+        with one_thread():
+            turned = turns(seen.grey, pairs, self._grey)
+            unlike = misfit(seen.grey, pairs, turned, self._grey).reshape(nearest.shape)
+            told = np.exp(1j * (self.headings_[pairs[:, 1]] + turned)).reshape(nearest.shape)
+        return Compared(np.asarray(np.angle(told.sum(axis=1))), unlike.min(axis=1))
+
+    def compare_known(self, pairs: Int[np.ndarray, "pairs 2"]) -> Compared:
+        """Give by how much the first of known views near each other is turned from the second, and the misfit."""
+        with one_thread():
+            turned = turns(self._grey, pairs)
+            return Compared(turned, misfit(self._grey, pairs, turned))
+
+    def state(self) -> dict[str, np.ndarray]:
+        """Give all that was learnt, by name; complex numbers as pairs of real ones."""
+        check_is_fitted(self)
+        grey = self._grey.view(np.float32).reshape(*self._grey.shape, 2)
+        return {
+            "mean": self._mean,
+            "axes": self._axes,
+            "scale": np.array(self._scale),
+            "places": self.places_,
+            "headings": self.headings_,
+            "grey": grey,
+        }
+
+    @classmethod
+    def from_state(cls, state: Mapping[str, np.ndarray]) -> "PanoramaCode":
+        """Make a code of what `state` gave."""
+        code = cls(len(state["axes"]))
+        code._mean, code._axes, code._scale = state["mean"], state["axes"], float(state["scale"])
+        code.places_, code.headings_ = state["places"], state["headings"]
+        code._grey = state["grey"].view(np.complex64)[..., 0]
+        return code
 
     def _features(
         self, places: Float[np.ndarray, "views components"], headings: Float[np.ndarray, "views"]

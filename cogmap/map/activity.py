@@ -1,9 +1,11 @@
 """Activity of a cognitive map: what it says of views."""
 
-from dataclasses import dataclass
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float, Int
 
 
 @dataclass(frozen=True)
@@ -22,6 +24,12 @@ class Activity:
     position
         In the map's own metric frame, a similarity (with a mirror where `phase` has one) away from metres.
         NaN when the walk has taught no metric map.
+    plain
+        The same as the charts alone tell it, where `CognitiveMap.refine` has made `phase` and `position`
+        finer; else None.
+    novelty
+        There too, how far the views are from those that the map was refined by, over what is usual among
+        these: about 1 where places are known, many in another room.
     """
 
     place: Float[np.ndarray, "views place_cells"]
@@ -29,6 +37,13 @@ class Activity:
     phase: Float[np.ndarray, "views"]
     odour: Float[np.ndarray, "views odorants"]
     position: Float[np.ndarray, "views 2"]
+    plain: Activity | None = None
+    novelty: Float[np.ndarray, "views"] | None = None
 
     def __len__(self) -> int:
         return len(self.phase)
+
+    def __getitem__(self, views: slice | Int[np.ndarray, "_"] | Bool[np.ndarray, "_"]) -> Activity:
+        """Take some of the views."""
+        parts = {each.name: getattr(self, each.name) for each in fields(self)}
+        return Activity(**{name: None if part is None else part[views] for name, part in parts.items()})

@@ -7,9 +7,9 @@ import warnings
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
-from dataclasses import KW_ONLY, dataclass, fields
+from dataclasses import KW_ONLY, dataclass, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
@@ -33,8 +33,13 @@ from neurons.merging import forked, merge
 from neurons.network import Network
 from neurons.stages import SMELL_FIRST, STAGES, StripStage, chosen, joined
 
+if TYPE_CHECKING:
+    from cogmap.map.relaxed_places import RelaxedPlaces
+
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same map."""
+RELAXED = "relaxed_places."
+"""How what `refine` has learnt is called among the weights of a saved map."""
 
 
 @dataclass(eq=False)
@@ -81,6 +86,8 @@ class CognitiveMap:
         Why not, in words; empty when trusted.
     metric_reason_
         Why there is no metric map, in words; empty when there is one.
+    relaxed_places_, refine_reason_
+        What `refine` has learnt, or None and why there is none.
     seconds_
         Time spent per stage of development in this process, s.
     view_shape_, odorants_
@@ -254,7 +261,43 @@ class CognitiveMap:
                 self._look(network.recall(strip, None if logs is None else logs[rows]))
                 for rows, strip in self._strips(views)
             ]
-        return Activity(*(torch.cat(part).cpu().numpy() for part in zip(*parts, strict=True)))
+        columns = [torch.cat(part).cpu().numpy() for part in zip(*parts, strict=True)]
+        plain = Activity(*columns)
+        if self.relaxed_places_ is None:
+            return plain
+        there = self.relaxed_places_.locate(views, plain.position)
+        finer = {name: part.astype(np.float32) for name, part in there._asdict().items()}
+        return replace(plain, **finer, plain=plain)
+
+    def refine(self, views: Any) -> CognitiveMap:
+        """Relax places and headings of remembered panoramas, so that what is perceived is fine enough to act on.
+
+        Best the views that were learnt, in the order of the walk. From then on `perceive` gives positions and
+        phases by `cogmap.map.relaxed_places.RelaxedPlaces`, and beside them those of the charts alone
+        (`Activity.plain`). The map remembers 2.7 KB of each view. Where it cannot be done, `refine_reason_`
+        and a warning say why, and all stays as it was.
+
+        Parameters
+        ----------
+        views
+            (views, height, width, 3) uint8, more than 60.
+        """
+        # who only learns waits for nothing that plans need
+        from cogmap.map.relaxed_places import RelaxedPlaces  # noqa: PLC0415
+
+        self.relaxed_places_: RelaxedPlaces | None = None
+        reason = self.reason_ or self.metric_reason_
+        if not reason:
+            known = self.perceive(views)
+            with one_thread():
+                try:
+                    self.relaxed_places_ = RelaxedPlaces.learn(views, known.position, known.phase)
+                except CogmapError as error:
+                    reason = str(error)
+        self.refine_reason_ = reason
+        if reason:
+            warnings.warn(f"this map's places are not relaxed: {reason}", UntrustedMapWarning, stacklevel=2)
+        return self
 
     def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
         """Give the principal components of views, the space of the view manifold, float32."""
@@ -328,7 +371,11 @@ class CognitiveMap:
             "charts": len(network.charts),
         }
         settings = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "device"}
-        write_state(Path(path), network.state_dict(), settings, learnt)
+        weights = network.state_dict()
+        if self.relaxed_places_ is not None:
+            state = self.relaxed_places_.state()
+            weights |= {RELAXED + name: torch.from_numpy(array) for name, array in state.items()}
+        write_state(Path(path), weights, settings, learnt)
 
     @classmethod
     def load(cls, path: str | Path, *, device: str = "cpu") -> CognitiveMap:
@@ -348,7 +395,16 @@ class CognitiveMap:
                 epoch=learnt["epoch"],
                 charts=learnt["charts"],
             )
+            relaxed = {
+                name.removeprefix(RELAXED): weights.pop(name).numpy()
+                for name in list(weights)
+                if name.startswith(RELAXED)
+            }
             loaded._network.load_state_dict(weights)
+            if relaxed:
+                from cogmap.map.relaxed_places import RelaxedPlaces  # noqa: PLC0415
+
+                loaded.relaxed_places_, loaded.refine_reason_ = RelaxedPlaces.from_state(relaxed), ""
         except (KeyError, TypeError, RuntimeError) as error:
             raise CogmapError(f"{path} does not hold a whole map: {error}") from None
         return loaded
@@ -364,6 +420,8 @@ class CognitiveMap:
         self._retina = Retina(*view_shape[:2]).to(self._device)
         self.view_shape_, self.odorants_ = view_shape, odorants
         self.seconds_: dict[str, float] = {}
+        self.relaxed_places_ = None
+        self.refine_reason_ = "it was shown no views to relax places by; call refine"
         with one_thread():  # even the initial weights, orthonormal by QR, depend on the number of threads
             self._network = Network(
                 self._retina.features,

@@ -6,13 +6,12 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float, Int
-from sklearn.utils import gen_batches
 
 from cogmap.errors import CogmapError
+from cogmap.graph.affine_weights import affine_weights
 from cogmap.graph.knn import Metric, nearest_points
 from cogmap.graph.points import Cloud, checked_cloud
 from cogmap.inputs import checked_count
-from cogmap.threads import one_thread
 
 
 class Location(NamedTuple):
@@ -26,16 +25,11 @@ class Location(NamedTuple):
 
 @dataclass(eq=False)
 class Localiser:
-    r"""Places views among remembered ones by affine weights; whatever these say of themselves interpolates.
+    """Places views among remembered ones by affine weights; whatever these say of themselves interpolates.
 
     Views with similar `features`, such as bags of words, are near, but how near features cannot say. So the
-    weights w, Σw = 1, are those of a ridge regression on the codes c of the nearest k views, whose span is
-    the tangent space of the manifold there. For a query with code q, and X the codes minus their mean c̄,
-
-    .. math:: w = \frac{1}{k} + \frac{1}{k} X (X^\top X / k + \lambda t I)^{-1} (q - \bar c),
-
-    where t is the total variance of the k codes. Any quantity y that varies linearly over the neighbourhood
-    is then Σ w y: a regression of y on the codes, without y having been asked for.
+    weights are those of a ridge regression on the `codes` of the nearest views
+    (`cogmap.graph.affine_weights`).
 
     Parameters
     ----------
@@ -54,10 +48,6 @@ class Localiser:
     ------
     CogmapError
         From `locate`, for arrays that are not finite or do not fit each other.
-
-    References
-    ----------
-    Roweis & Saul (2000), Nonlinear dimensionality reduction by locally linear embedding: affine weights.
     """
 
     features: Cloud
@@ -82,35 +72,7 @@ class Localiser:
             )
         count = min(checked_count("neighbours", self.neighbours), self.features.shape[0])
         indices = nearest_points(self.features, count, queries=query, metric=self.metric).indices
-        weights = np.empty(indices.shape)
-        with one_thread():
-            for block in gen_batches(len(indices), 128):
-                weights[block] = self._weigh(train, indices[block], test[block])
-        return Location(indices, weights)
-
-    def _weigh(
-        self,
-        train: Float[np.ndarray, "views codes"],
-        indices: Int[np.ndarray, "queries neighbours"],
-        test: Float[np.ndarray, "queries codes"],
-    ) -> Float[np.ndarray, "queries neighbours"]:
-        share = (indices >= 0) / np.maximum((indices >= 0).sum(axis=1, keepdims=True), 1)
-        near = train[indices].astype(np.float64)
-        mean = np.einsum("qk,qkc->qc", share, near)
-        near -= mean[:, None]
-        root = np.sqrt(share)
-        near *= root[:, :, None]
-        products = near @ near.transpose(0, 2, 1)
-        spread = np.trace(products, axis1=1, axis2=2)
-        # Equal codes have no spread, and then no view is more like the query than another.
-        products += np.eye(len(share[0])) * (self.ridge * spread + (spread == 0))[:, None, None]
-        sought = near @ (test - mean)[:, :, None]
-        tilt = np.linalg.solve(products, sought)[:, :, 0]
-        # weights sum to one: along the root they would all grow alike, by rounding divided by the ridge
-        tilt -= root * (root * tilt).sum(axis=1, keepdims=True)
-        weights: np.ndarray = share + root * tilt
-        weights[indices[:, 0] < 0] = np.nan
-        return weights
+        return Location(indices, affine_weights(train, indices, test, self.ridge))
 
 
 def _codes(codes: Cloud, views: int) -> Float[np.ndarray, "views codes"]:

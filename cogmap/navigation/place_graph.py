@@ -84,6 +84,11 @@ class PlaceGraph:
         """Whether the straight way keeps within what was visited."""
         return bool(self._clearance_along(start, goal) > 0)
 
+    def sees(self, start: Float[np.ndarray, "2"], goal: Float[np.ndarray, "2"]) -> bool:
+        """Whether the straight way keeps the margin, or as far from what is not free as its ends."""
+        held = min(self._margin, *(self._clearance_along(end, end) for end in (start, goal)))
+        return self.is_free(start, goal) and self._clearance_along(start, goal) >= held - self._cell
+
     @cached_property
     def spacing(self) -> float:
         """Distance at which views lie densely."""

@@ -19,10 +19,10 @@ def plugin(folder: Path, monkeypatch: pytest.MonkeyPatch, value: str, group: str
 
 def test_all_that_is_there_is_found() -> None:
     assert list(motions()) == [
-        "brownian", "chemotaxis", "cyclic", "replay", "rotation", "slow_turning", "track"
+        "babble", "brownian", "chemotaxis", "cyclic", "replay", "rotation", "slow_turning", "track"
     ]  # fmt: skip
     assert motions()["brownian"] is Brownian
-    assert list(bodies()) == ["disc"]
+    assert list(bodies()) == ["disc", "heavy_disc"]
 
 
 def test_a_plugin_is_looked_through_to_the_bottom(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

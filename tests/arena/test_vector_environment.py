@@ -5,6 +5,8 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode
 
+from arena.bodies.disc import Disc
+from arena.bodies.heavy_disc import HeavyDisc
 from arena.environment import Observation
 from arena.errors import ArenaError
 from arena.eye.camera import Camera
@@ -50,6 +52,8 @@ def brightening(before: Observation, after: Observation) -> float:
         {"nose": Nose(fluctuation=0.3)},
         {"control": "wheels", "reward": brightening},
         {"camera": Camera.panoramic(16, 4, noise=0.1)},
+        {"body": Disc(slip=0.1, wheel_gains=(0.7, 1.0), swapped=True, delay=0.07)},
+        {"body": HeavyDisc(delay=0.05)},
     ],
 )
 def test_each_is_as_alone_bit_by_bit(mode: AutoresetMode, fields: dict[str, Any]) -> None:

@@ -32,7 +32,7 @@ def test_many_bodies_pass_through_each_other() -> None:
     states = np.array([(*start, 0.0, 0.0, math.nan) for start in starts])
     for _ in range(50):
         commands = rng.uniform(-1, 1, (40, 2))
-        rolling.roll_all(states, room.edges, Disc().limits, commands, 0.05)
+        rolling.roll_all(states, room.edges, Disc().limits, np.ones((40, 2)), commands, 0.05)
         for drive, command in zip(drives, commands.tolist(), strict=True):
             drive.step(*command, 0.05)
     np.testing.assert_array_equal(states[:, :2], [drive.pose[:2] for drive in drives])

@@ -9,10 +9,12 @@ from hypothesis import strategies as st
 from arena import (
     Arena,
     ArenaError,
+    Babble,
     Brownian,
     Chemotaxis,
     Cyclic,
     Disc,
+    HeavyDisc,
     Motion,
     Rotation,
     Track,
@@ -20,7 +22,7 @@ from arena import (
 )
 from arena.motions.base import Striding
 
-MOTIONS = [Brownian(), Rotation(), Cyclic(), Chemotaxis(), Track()]
+MOTIONS = [Brownian(), Rotation(), Cyclic(), Chemotaxis(), Track(), Babble()]
 SLOW = Disc(max_acceleration=1.0, max_turn_acceleration=2.0)
 
 
@@ -104,6 +106,20 @@ def test_no_motion_is_faster_than_its_body(motion: Motion) -> None:
     assert (np.hypot(*np.diff(walk.poses[:, :2], axis=0).T) <= 0.2 * lapse + 1e-9).all()
     turned = np.abs(np.angle(np.exp(1j * np.diff(walk.poses[:, 2]))))
     assert (turned <= 0.5 * lapse + 1e-9).all()
+
+
+@pytest.mark.parametrize(
+    "body",
+    [Disc(slip=0.2, wheel_gains=(0.7, 1.0), swapped=True, delay=0.13), HeavyDisc()],
+    ids=["disturbed", "heavy"],
+)
+@pytest.mark.parametrize("motion", MOTIONS, ids=name)
+def test_motions_go_on_whatever_the_body_makes_of_them(motion: Motion, body: Disc) -> None:
+    arena = Arena.load("obstacles")
+    first, again = (motion.walk(arena, body, 60, np.random.default_rng(0)).poses for _ in range(2))
+    np.testing.assert_array_equal(first, again)
+    assert shapely.distance(arena.free_space(0.18), shapely.points(first[:, :2])).max() < 1e-3
+    assert np.ptp(first[:, 2]) > 0.1
 
 
 @pytest.mark.parametrize("motion", MOTIONS, ids=name)

@@ -76,6 +76,20 @@ def test_without_truth(tmp_path: Path) -> None:
     assert blind[:3].poses is None
 
 
+def test_commands_are_no_truth_and_may_stop(tmp_path: Path) -> None:
+    commands = np.full((600, 2), 0.5)
+    commands[-1] = np.nan
+    rec = recording(commands=commands).without_truth()
+    rec.save(tmp_path / "rec.zarr")
+    back = Recording.open(tmp_path / "rec.zarr")
+    np.testing.assert_array_equal(back.require("commands"), commands)
+    np.testing.assert_array_equal(back[590:].commands, commands[590:])
+    with pytest.raises(ArenaError, match="commands has NaN or infinite"):
+        recording(commands=np.full((600, 2), np.inf))
+    with pytest.raises(ArenaError, match="commands is float64"):
+        _check(rec.views, {"times": rec.times, "commands": commands[1:]})
+
+
 @pytest.mark.parametrize(
     "key",
     [

@@ -25,13 +25,13 @@ def panorama(bearings: np.ndarray) -> np.ndarray:
 
 def test_turns_are_the_first_heading_minus_the_second() -> None:
     headings = RNG.uniform(-np.pi, np.pi, 40)
-    found = strips(np.stack([panorama(AZIMUTHS + heading) for heading in headings]))
+    found = strips(np.stack([panorama(AZIMUTHS + heading) for heading in headings])).grey
     pairs = RNG.integers(0, 40, (100, 2))
     assert off(turns(found, pairs) - headings[pairs[:, 0]] + headings[pairs[:, 1]]).max() < 0.5
 
 
 def test_blocks_of_pairs_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = strips(np.stack([panorama(AZIMUTHS + heading) for heading in range(6)]))
+    found = strips(np.stack([panorama(AZIMUTHS + heading) for heading in range(6)])).grey
     pairs = RNG.integers(0, 6, (20, 2))
     whole = turns(found, pairs)
     monkeypatch.setattr(compass, "BLOCK", 7)
@@ -44,7 +44,7 @@ def test_the_broadest_and_the_finest_stripes_do_not_tell_the_turn(stripes: int) 
     views = [panorama(AZIMUTHS + heading).astype(float) / 2 for heading in (0.9, 0.0)]
     blurred = 60 * (1 + np.cos(stripes * AZIMUTHS))
     both = np.stack([view + blurred[:, None] for view in views]).astype(np.uint8)
-    assert off(turns(strips(both), np.array([[0, 1]])) - 0.9)[0] < 5
+    assert off(turns(strips(both).grey, np.array([[0, 1]])) - 0.9)[0] < 5
 
 
 @pytest.mark.parametrize("step", [0.0, 1.0, -2.2])
@@ -52,15 +52,15 @@ def test_a_step_past_what_is_near_on_one_side_is_no_turn(step: float) -> None:
     """Nearness is 0.15 on the left and 0.02 on the right, so that the mean flow is far from the turn."""
     nearness = 0.085 + 0.065 * np.sin(AZIMUTHS)
     flow = nearness * np.sin(AZIMUTHS - step)
-    found = strips(np.stack([panorama(AZIMUTHS + 0.4), panorama(AZIMUTHS - flow)]))
+    found = strips(np.stack([panorama(AZIMUTHS + 0.4), panorama(AZIMUTHS - flow)])).grey
     turn = turns(found, np.array([[0, 1]]))
     assert off(turn - 0.4)[0] < 0.5 * np.rad2deg(np.abs(flow.mean()))
 
 
 def test_pairs_of_two_sets_and_views_of_nothing() -> None:
-    ours, theirs = strips(panorama(AZIMUTHS + 1)[None]), strips(panorama(AZIMUTHS - 0.5)[None])
+    ours, theirs = (strips(panorama(AZIMUTHS + by)[None]).grey for by in (1, -0.5))
     assert off(turns(ours, np.array([[0, 0]]), theirs) - 1.5)[0] < 0.5
-    blank = strips(np.full((2, 10, 90, 3), 77, np.uint8))
+    blank = strips(np.full((2, 10, 90, 3), 77, np.uint8)).grey
     assert np.isfinite(turns(blank, np.array([[0, 1]]))).all()
 
 

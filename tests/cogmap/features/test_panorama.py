@@ -19,7 +19,7 @@ def test_a_turn_changes_no_magnitude_and_is_told() -> None:
     headings = np.random.default_rng(0).uniform(-np.pi, np.pi, 50)
     poses = np.column_stack([np.full((50, 2), 0.1), headings])
     poses[:, 1] = 1.0
-    found = strips(CAMERA.render(ROOM, poses))
+    found = strips(CAMERA.render(ROOM, poses)).grey
     spread = np.linalg.norm(found.turn_invariant - found.turn_invariant.mean(axis=0), axis=1)
     assert spread.max() < 0.1 * np.linalg.norm(found.turn_invariant.mean(axis=0))
     pairs = np.stack([np.arange(50), np.roll(np.arange(50), 1)], axis=1)
@@ -31,7 +31,7 @@ def test_a_step_beside_an_obstacle_is_not_taken_for_a_turn() -> None:
     poses = np.column_stack([np.full(60, -1.3), rng.uniform(0, 0.6, 60), rng.uniform(-np.pi, np.pi, 60)])
     moved = poses + np.column_stack([np.zeros(60), np.full(60, 0.06), rng.uniform(-1, 1, 60)])
     pairs = np.stack([np.arange(60), np.arange(60)], axis=1)
-    found = turns(strips(CAMERA.render(ROOM, poses)), pairs, strips(CAMERA.render(ROOM, moved)))
+    found = turns(strips(CAMERA.render(ROOM, poses)).grey, pairs, strips(CAMERA.render(ROOM, moved)).grey)
     assert np.median(off(found - poses[:, 2] + moved[:, 2])) < 2
 
 

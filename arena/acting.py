@@ -1,0 +1,140 @@
+"""Acting: the loop of looking, deciding and moving, and the journeys of many who are in it at once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from arena.bodies.disc import Disc
+from arena.errors import ArenaError
+from arena.explorers import Explorers, Observation
+from arena.eye.base import Eye
+from arena.motions.policy import Policy
+from arena.rooms.arena import Arena
+from arena.smell.nose import Nose
+
+DT = 0.2
+"""Time from a decision to the next, s, unless told."""
+
+
+class Step(NamedTuple):
+    """A turn of the loop."""
+
+    poses: Float[np.ndarray, "explorers 3"]
+    """Where they looked (m, m, rad): the truth."""
+    sensed: Observation
+    """What they sensed there."""
+    commands: Float[np.ndarray, "explorers 2"]
+    """What the policy said; NaN for those that have stopped."""
+    touched: Bool[np.ndarray, " explorers"]
+    """Whether something stopped them while they obeyed: the truth."""
+
+
+def act_and_look(explorers: Explorers, policy: Policy, dt: float) -> Iterator[Step]:
+    """Look, ask a policy about all, and let those obey for dt (s) that go on, until all have stopped.
+
+    The last step, at which the last has stopped, moves nobody.
+
+    Raises
+    ------
+    ArenaError
+        For a dt that is not positive, and commands that are not two numbers for each.
+    """
+    if not 0 < dt < math.inf:
+        raise ArenaError(f"dt is {dt} s; give a positive time from a decision to the next")
+    everyone = going = np.arange(explorers.count)
+    touched = np.zeros(explorers.count, bool)
+    while len(going):
+        poses, sensed = explorers.poses(everyone), explorers.sense(going)
+        told = np.asarray(policy(sensed), float)
+        if told.shape != (explorers.count, 2):
+            raise ArenaError(f"a policy gave commands of shape {told.shape} for {explorers.count} explorers")
+        going = going[~np.isnan(told[going]).all(axis=1)]
+        commands = np.full((explorers.count, 2), math.nan)
+        commands[going] = told[going]
+        if not np.isfinite(commands[going]).all():
+            raise ArenaError(
+                "a policy gave a command that is not finite; give two numbers, or two NaN to stop"
+            )
+        explorers.act(going, explorers.body.velocities(commands[going]), dt)
+        touched[:] = False
+        touched[going] = explorers.touched(going)
+        yield Step(poses, sensed, commands, touched.copy())
+
+
+class Journeys(NamedTuple):
+    """Ways of many explorers that were steered by a policy. All but the commands is the truth."""
+
+    times: Float[np.ndarray, " looks"]
+    """s; one more than steps."""
+    poses: Float[np.ndarray, "looks explorers 3"]
+    """x, y in m and heading in rad; an explorer that has stopped stays."""
+    commands: Float[np.ndarray, "steps explorers 2"]
+    """As the policy gave them; NaN from where it has stopped."""
+    touched: Bool[np.ndarray, "steps explorers"]
+    """Whether a wall or the platform's border stopped the step."""
+    steps: Int[np.ndarray, " explorers"]
+    """How many commands each has obeyed: the row of `poses` from which on it stands still."""
+
+
+def journeys(
+    arena: Arena,
+    policy: Policy,
+    camera: Eye,
+    starts: Float[np.ndarray, "explorers 3"],
+    *,
+    nose: Nose = Nose(),
+    body: Disc = Disc(),
+    dt: float = DT,
+    most_steps: int,
+    seed: int = 0,
+) -> Journeys:
+    """Let many explorers go at once, in one room, steered by one policy, without keeping what they saw.
+
+    An explorer's journey is the same whoever goes beside it, if the policy treats each by itself.
+
+    Parameters
+    ----------
+    arena, policy, camera, nose, body
+        The room, what steers, and the animal. The policy is asked about all explorers at every step.
+    starts
+        x, y (m) and heading (rad) of each.
+    dt
+        Time from a decision to the next, s.
+    most_steps
+        Steps after which those that still go are left.
+    seed
+        Of slip and of the noise of eye and nose; explorer k has the k-th generator that it spawns.
+
+    Raises
+    ------
+    ArenaError
+        For a start that is not free, a count or seed out of range, and commands that mean nothing.
+    """
+    if starts.ndim != 2 or starts.shape[1] != 3 or not len(starts):
+        raise ArenaError(f"the starts are of shape {starts.shape}; give x, y (m) and heading (rad) a row")
+    if most_steps < 1 or seed < 0:
+        raise ArenaError(
+            f"most_steps is {most_steps} and seed is {seed}; give at least 1 and no negative seed"
+        )
+    everyone = np.arange(len(starts))
+    explorers = Explorers(arena, camera, nose=nose, body=body, count=len(starts))
+    rngs = [np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(len(starts))]
+    explorers.begin(everyone, [(x, y, heading) for x, y, heading in starts.tolist()], rngs)
+    loop = islice(act_and_look(explorers, policy, dt), most_steps)
+    gone = [(step.poses, step.commands, step.touched) for step in loop]
+    poses, commands, touched = (np.array(rows) for rows in zip(*gone, strict=True))
+    moving = np.isfinite(commands[:, :, 0])
+    steps = int(moving.any(axis=1).sum())
+    return Journeys(
+        dt * np.arange(steps + 1),
+        np.concatenate([poses[:steps], explorers.poses(everyone)[None]]),
+        commands[:steps],
+        touched[:steps],
+        moving.sum(axis=0),
+    )

@@ -1,0 +1,7 @@
+"""Control: what commands do, learnt from what was seen, and ways walked by it; nothing here is told a pose."""
+
+from cogmap.control.motor_model import MotorModel
+from cogmap.control.reacher import Reacher
+from cogmap.control.reaching import Outcome, Reaching
+
+__all__ = ["MotorModel", "Outcome", "Reacher", "Reaching"]

@@ -1,0 +1,178 @@
+"""The policy that reaches: one decision after the other, for one explorer or a batch."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from arena.angles import wrap_angle
+from arena.motions.policy import Sensed
+from cogmap.control.steering import Steering
+from cogmap.errors import CogmapError
+from cogmap.map.activity import Activity
+from cogmap.map.cognitive_map import CognitiveMap
+from cogmap.navigation.place_graph import PlaceGraph
+
+KNOWN = 4.0
+"""Novelty up to which a view is of a place that is remembered."""
+NEAR = 2.0
+"""Decisions' ways from the goal within which the body may go backwards."""
+ALIGNED = 0.6
+"""Error of direction (rad) from which on the body only turns."""
+EASE = 8
+"""Decisions near the goal in which what counts as reached doubles: as exact as slips and noise allow."""
+SETTLED = 2
+"""Decisions at the goal after which it stops."""
+PATIENCE = 10
+"""Decisions without the motion that was commanded, or in unknown places, after which it gives up."""
+HELD = 3
+"""Of these, after each of which it backs off."""
+
+
+class Outcome(IntEnum):
+    """What became of a journey."""
+
+    ON_THE_WAY = 0
+    ARRIVED = 1
+    UNREACHABLE = 2
+    """No way of remembered places leads there."""
+    STUCK = 3
+    """Commands no longer move it."""
+    LOST = 4
+    """What it sees is nothing that it remembers."""
+
+
+REASONS = {
+    Outcome.ON_THE_WAY: "it is on its way",
+    Outcome.ARRIVED: "",
+    Outcome.UNREACHABLE: "no way through remembered places leads from the start to the goal; explore between",
+    Outcome.STUCK: "it no longer moves as commanded: something holds it; free it and start again",
+    Outcome.LOST: "what it sees is nothing that it remembers; refine the map with views from here",
+}
+
+
+class Reaching:
+    """A policy (`arena.Policy`) that goes where images were taken; `Reacher.towards` makes it.
+
+    At each decision the map perceives where the body is. What is still to come of the last command is
+    foretold, and from there the body turns to the next corner of its way, goes there, and at the last looks
+    as the goal does. Where it does not move as commanded it backs off; what is seen in unknown places is
+    bridged by what the motor model foretells.
+
+    Attributes
+    ----------
+    outcomes_ : (explorers,)
+        What became of each (`Outcome`).
+    """
+
+    def __init__(
+        self, cmap: CognitiveMap, ways: PlaceGraph, steering: Steering, goal: Activity, *, single: bool
+    ) -> None:
+        count = len(goal)
+        self._cmap, self._ways, self._steering, self._single = cmap, ways, steering, single
+        self._goal, self._goal_phase = goal.position.astype(np.float64), goal.phase.astype(np.float64)
+        self._last, self._before = np.zeros((count, 2)), np.zeros((count, 2))
+        self._position, self._phase = np.full((count, 2), np.nan), np.full(count, np.nan)
+        self._ahead: list[list[Float[np.ndarray, "2"]]] = [[] for _ in range(count)]
+        self._tries, self._at_goal, self._held, self._unknown = (np.zeros(count, int) for _ in range(4))
+        self._backing, self._docked = np.zeros(count, int), np.zeros(count, bool)
+        self.outcomes_ = np.full(count, Outcome.ON_THE_WAY, int)
+
+    @property
+    def reasons_(self) -> list[str]:
+        """Why each has not arrived, in words; empty for those that have."""
+        return [REASONS[Outcome(outcome)] for outcome in self.outcomes_]
+
+    def __call__(self, sensed: Sensed) -> Float[np.ndarray, "2"] | Float[np.ndarray, "explorers 2"] | None:
+        """Decide."""
+        views = sensed["view"][None] if self._single else sensed["view"]
+        if len(views) != len(self._goal):
+            raise CogmapError(f"there are {len(views)} explorers but {len(self._goal)} goals; give one each")
+        live = np.flatnonzero(self.outcomes_ == Outcome.ON_THE_WAY)
+        commands = np.full((len(views), 2), np.nan)
+        if len(live):
+            self._look(live, views[live])
+            live = live[self.outcomes_[live] == Outcome.ON_THE_WAY]
+            commands[live] = self._decide(live)
+            self._before[live], self._last[live] = self._last[live], commands[live]
+            stopped = self.outcomes_[live] != Outcome.ON_THE_WAY
+            commands[live[stopped]] = np.nan
+        if not self._single:
+            return commands
+        return None if np.isnan(commands).all() else commands[0]
+
+    def _look(self, live: Int[np.ndarray, "live"], views: np.ndarray) -> None:
+        """Tell where these are, and whether they moved as commanded."""
+        seen = self._cmap.perceive(views)
+        assert seen.novelty is not None
+        position, phase = seen.position.astype(np.float64), seen.phase.astype(np.float64)
+        foretold, facing = self._steering.moved(
+            self._position[live], self._phase[live], self._last[live], self._before[live]
+        )
+        began = np.isfinite(self._phase[live])
+        unknown = seen.novelty > KNOWN
+        self._unknown[live] = np.where(unknown, self._unknown[live] + 1, 0)
+        bridged = unknown & began
+        position[bridged], phase[bridged] = foretold[bridged], facing[bridged]
+        wanted = np.linalg.norm(foretold - self._position[live], axis=1)
+        gone = np.linalg.norm(position - self._position[live], axis=1)
+        held = began & (wanted > 0.3 * self._steering.pace) & (gone < 0.3 * wanted)
+        self._held[live] = np.where(
+            held, self._held[live] + 1, np.where(gone > 0.3 * wanted, 0, self._held[live])
+        )
+        self._backing[live[held & (self._held[live] % HELD == 0)]] = 2
+        self._position[live], self._phase[live] = position, phase
+        self.outcomes_[live[self._unknown[live] >= PATIENCE]] = Outcome.LOST
+        self.outcomes_[live[self._held[live] >= PATIENCE]] = Outcome.STUCK
+        for explorer in live[~began]:
+            self._plan(explorer)
+
+    def _plan(self, explorer: int) -> None:
+        try:
+            way = self._ways.plan(self._position[explorer], self._goal[explorer])
+        except CogmapError:
+            self.outcomes_[explorer] = Outcome.UNREACHABLE
+        else:
+            self._ahead[explorer] = list(way[1:])
+
+    def _decide(self, live: Int[np.ndarray, "live"]) -> Float[np.ndarray, "live 2"]:
+        steering = self._steering
+        position, phase = steering.coming(self._position[live], self._phase[live], self._last[live])
+        target = np.array(
+            [self._corner(explorer, here) for explorer, here in zip(live, position, strict=True)]
+        )
+        last = np.array([len(self._ahead[explorer]) == 1 for explorer in live])
+        step = target - position
+        far = np.linalg.norm(step, axis=1)
+        bearing = wrap_angle(np.arctan2(step[:, 1], step[:, 0]) - phase - steering.course)
+        backwards = last & (far < NEAR * steering.pace) & (np.abs(bearing) > np.pi / 2)
+        bearing = np.where(backwards, wrap_angle(bearing + np.pi), bearing)
+        forward = np.where(backwards, -far, far) * np.clip(1 - np.abs(bearing) / ALIGNED, 0, 1)
+        self._tries[live] += last & (far < steering.pace)
+        ease = 2.0 ** (self._tries[live] / EASE)
+        docked = last & (far < steering.close * ease * np.where(self._docked[live], 2, 1))
+        self._docked[live] = docked
+        turn = np.where(docked, wrap_angle(self._goal_phase[live] - phase), bearing)
+        forward[docked] = 0
+        backing = self._backing[live] > 0
+        forward[backing], turn[backing] = -0.5 * steering.pace, 0
+        self._backing[live] = np.maximum(self._backing[live] - 1, 0)
+        there = docked & (np.abs(turn) < steering.facing * ease)
+        forward[there] = turn[there] = 0
+        self._at_goal[live] = np.where(there, self._at_goal[live] + 1, 0)
+        self.outcomes_[live[self._at_goal[live] >= SETTLED]] = Outcome.ARRIVED
+        return steering.command(forward, turn)
+
+    def _corner(self, explorer: int, here: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:
+        """Give the next corner of a way, those left out that were reached or can be cut."""
+        ahead = self._ahead[explorer]
+        while len(ahead) > 1 and (
+            np.linalg.norm(ahead[0] - here) < 0.1 * self._steering.pace or self._ways.sees(here, ahead[1])
+        ):
+            ahead.pop(0)
+        if not self._ways.is_free(here, ahead[0]):
+            self._plan(explorer)
+            ahead = self._ahead[explorer]
+        return ahead[0]
