@@ -15,7 +15,7 @@ CUT = 3.0
 """Error, in units of its robust standard deviation, from which on a pixel counts less."""
 
 Pose = Float[np.ndarray, "views 3"]
-Painter = Callable[[Pose, bool], Float32[np.ndarray, "views pixels"]]
+Painter = Callable[[Pose], Float32[np.ndarray, "views pixels"]]
 
 
 def coarse(view: Num[np.ndarray, "height width 3"]) -> Float32[np.ndarray, "pixels"]:
@@ -27,7 +27,9 @@ def coarse(view: Num[np.ndarray, "height width 3"]) -> Float32[np.ndarray, "pixe
     return np.asarray(np.clip(small, 0, 255)).ravel()
 
 
-def aligned(views: Float32[np.ndarray, "views pixels"], poses: Pose, paint: Painter, reach: Pose) -> Pose:
+def aligned(
+    views: Float32[np.ndarray, "views pixels"], poses: Pose, fine: Painter, quick: Painter, reach: Pose
+) -> Pose:
     r"""Move poses until what is imagined there fits what is seen, whatever of it has changed.
 
     With D the imagined view and J its derivatives with respect to the pose, by central differences,
@@ -43,8 +45,8 @@ def aligned(views: Float32[np.ndarray, "views pixels"], poses: Pose, paint: Pain
         What is seen, `coarse`.
     poses
         Where they are perceived: position and phase.
-    paint
-        Gives imagined views, `coarse`: in full quality, or quickly, for the derivatives.
+    fine, quick
+        Give imagined views, `coarse`; the second for their derivatives.
     reach
         Differences of pose over which a view changes almost linearly, (1, 3).
 
@@ -53,15 +55,16 @@ def aligned(views: Float32[np.ndarray, "views pixels"], poses: Pose, paint: Pain
     Lucas & Kanade (1981), An iterative image registration technique; Baker & Matthews (2004), Lucas-Kanade 20
     years on. Black & Anandan (1996), The robust estimation of multiple motions.
     """
-    left = views - paint(poses, True)
+    left = views - fine(poses)
     for _ in range(STEPS):
         slopes = np.stack(
-            [(paint(poses + step, False) - paint(poses - step, False)) / 2 for step in reach * np.eye(3)], axis=2
+            [(quick(poses + step) - quick(poses - step)) / 2 for step in reach * np.eye(3)],
+            axis=2,
         )
         scale = 1.4826 * np.median(np.abs(left), axis=1) + 0.5
         moves = np.stack([_step(*one) for one in zip(left, slopes, scale, strict=True)])
         tried = poses + np.clip(moves, -3, 3) * reach
-        after = views - paint(tried, True)
+        after = views - fine(tried)
         better = (_loss(after, scale) < _loss(left, scale))[:, None]
         poses, left = np.where(better, tried, poses), np.where(better, after, left)
     return poses

@@ -91,7 +91,7 @@ class RememberedPlaces:
         candidates = min(CANDIDATES, len(self.position))
         asked = candidates if without is None else min(2 * candidates, len(self.position))
         # asked for as a list, also one neighbour has an axis of its own
-        reach, near = self.tree.query(position, k=np.arange(1, asked + 1))
+        reach, near = (np.asarray(part) for part in self.tree.query(position, k=np.arange(1, asked + 1)))
         if without is not None:
             reach = np.where(np.abs(near - without[:, None]) <= VISIT, np.inf, reach)
             order = np.argsort(reach, axis=1, kind="stable")[:, :candidates]
@@ -127,6 +127,8 @@ def _weights(
     first = np.broadcast_to(np.array([[1.0], [0.0], [0.0]]), (len(normal), 3, 1))
     affine = (weighed @ np.linalg.solve(normal, first))[:, :, 0]
     near = there / (np.sqrt(squares) + 1e-3 * mean)
-    return tuple(  # type: ignore[return-value]
-        (one / one.sum(axis=1, keepdims=True)).astype(np.float32) for one in (affine, near)
-    )
+    return _shares(affine), _shares(near)
+
+
+def _shares(weights: Float[np.ndarray, "targets sources"]) -> Float32[np.ndarray, "targets sources"]:
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True), np.float32)

@@ -57,7 +57,7 @@ class Surprise:
         return np.asarray((self.pixels > self.threshold).mean(axis=(1, 2)))
 
     def plan(self) -> Plan:
-        """Pool what surprises over all views: back-projected onto the map, where did something change?
+        """Pool what surprises over all views, back-projected onto the map: where something has changed.
 
         A cell is as surprising as the alarmed views are, on average, in its direction: 1 in the middle of a
         run of columns that surprise, less by a Gaussian of 2.5° beside it.
