@@ -10,6 +10,7 @@ from cogmap.plots.cells.learning_curves import plot_courses
 from cogmap.plots.cells.place_cells import plot_rate_maps
 from cogmap.plots.one_factor import plot_cases
 from cogmap.plots.rooms.contact_sheet import plot_sheet
+from cogmap.plots.rooms.dreams import plot_dream_errors, plot_dreams, plot_expectations, plot_film
 from cogmap.plots.rooms.goals import plot_goals
 from cogmap.plots.rooms.nearest_views import plot_likeness
 from cogmap.plots.rooms.neighbours import plot_neighbours
@@ -39,8 +40,12 @@ __all__ = [
     "plot_confusion",
     "plot_courses",
     "plot_cue_control",
+    "plot_dream_errors",
+    "plot_dreams",
     "plot_embedding",
     "plot_examples",
+    "plot_expectations",
+    "plot_film",
     "plot_goals",
     "plot_grid_cells",
     "plot_likeness",

@@ -1,0 +1,1 @@
+"""Acting on the map: dreams, expectations, ways to goals, one file each."""
