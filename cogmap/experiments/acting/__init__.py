@@ -1,1 +1,1 @@
-"""Acting on the map: dreams, expectations, ways to goals, one file each."""
+"""What an explorer does with its map: imagine, expect and reach, one file each."""
