@@ -1,6 +1,13 @@
 """The figures, from results only: arrays in, a matplotlib Figure out."""
 
 from cogmap.plots.acting.catchment import plot_catchment
+from cogmap.plots.acting.dreams import (
+    plot_dream_errors,
+    plot_dreams,
+    plot_expectations,
+    plot_film,
+    plot_surprise,
+)
 from cogmap.plots.acting.journeys import plot_journeys
 from cogmap.plots.acting.reached import plot_reached
 from cogmap.plots.cells.afferents import plot_afferents
@@ -13,7 +20,6 @@ from cogmap.plots.cells.learning_curves import plot_courses
 from cogmap.plots.cells.place_cells import plot_rate_maps
 from cogmap.plots.one_factor import plot_cases
 from cogmap.plots.rooms.contact_sheet import plot_sheet
-from cogmap.plots.rooms.dreams import plot_dream_errors, plot_dreams, plot_expectations, plot_film
 from cogmap.plots.rooms.goals import plot_goals
 from cogmap.plots.rooms.nearest_views import plot_likeness
 from cogmap.plots.rooms.neighbours import plot_neighbours
@@ -64,6 +70,7 @@ __all__ = [
     "plot_room",
     "plot_routes",
     "plot_sheet",
+    "plot_surprise",
     "plot_translation",
     "plot_trend",
     "plot_tuning_curves",

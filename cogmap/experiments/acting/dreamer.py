@@ -1,4 +1,4 @@
-"""What the experiments on imagination share: a trial, its dreams, and both frames, the room's and the map's."""
+"""What experiments on imagination share: a trial, its dreams, and how the map lies in the room."""
 
 from __future__ import annotations
 

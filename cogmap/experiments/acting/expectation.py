@@ -23,7 +23,7 @@ def expectation(conditions: Conditions) -> Result:
     """Expect the next view on straight ways of a fresh walk, as far ahead as the body usually got.
 
     `ahead_psnr_db` is the median over steps; beside it persistence, which expects to see the same view again,
-    and the same view turned to the heading that it will have. Truth chooses the straight steps and nothing else.
+    and the same view turned to the heading that it will have. Truth chooses the straight steps, nothing else.
     """
     dreamer = Dreamer.of(conditions)
     trial, dream = dreamer.trial, dreamer.imagination

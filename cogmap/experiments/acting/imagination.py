@@ -19,6 +19,7 @@ from cogmap.evaluation.pose_agreement import motion_distances
 from cogmap.experiments import Conditions, Result, experiment, pose_columns
 from cogmap.experiments.acting.dreamer import Dreamer
 from cogmap.imagination import Dream
+from cogmap.imagination.imagination import Method
 from cogmap.plots import plot_dream_errors, plot_dreams, plot_film
 from cogmap.threads import one_thread
 
@@ -26,18 +27,18 @@ TARGETS = 300
 """Fresh views that are imagined."""
 WAYS = 6
 """Dreamt from one fresh view to another."""
-METHODS = ("turned", "blend", "warp")
+METHODS: tuple[Method, ...] = ("turned", "blend", "warp")
 
 
 @experiment(room="furnished", views=17_000)
 def imagination(conditions: Conditions) -> Result:
     """Imagine fresh views, from the pose that the map itself perceives of them and from the true one.
 
-    `psnr_*`, `ssim_mean` and `dream_*` are of "warp" in the map's frame: how like the dream is to the view, and
-    how far apart the map places both. `outside_*` asks for the true pose through one similarity, fitted on the
-    training views. Peers in the table are the mean view and the nearest by true pose. `replay_r2` is the share
-    of the dreamt ways that is decoded from the place cells which fire in the dream (4 nearest neighbours among
-    remembered views). Times are of one core.
+    `psnr_*`, `ssim_mean` and `dream_*` are of "warp" in the map's frame: how like the dream is to the view,
+    and how far apart the map places both. `outside_*` asks for the true pose through one similarity, fitted
+    on the training views. Peers in the table are the mean view and the nearest by true pose. `replay_r2` is
+    the share of the dreamt ways that is decoded from the place cells which fire in the dream (4 nearest
+    neighbours among remembered views). Times are of one core.
     """
     dreamer = Dreamer.of(conditions)
     trial, dream = dreamer.trial, dreamer.imagination

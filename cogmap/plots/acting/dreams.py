@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pandas as pd
 from jaxtyping import Float, UInt8
@@ -10,6 +12,7 @@ from matplotlib.figure import Figure
 
 from arena.rooms.arena import Arena
 from cogmap.errors import CogmapError
+from cogmap.imagination.surprise import Surprise
 from cogmap.plots.rooms.room import draw_arrows, draw_surfaces, frame_room
 from cogmap.plots.style import BAD, GOOD, INK, SOFT, TINY, colour_bar, new_figure, new_panels, tidy, tidy_room
 
@@ -52,7 +55,9 @@ def plot_expectations(before: Views, expected: Views, after: Views, steps: pd.Da
     _check_pairs(expected, after)
     rows, (height, width) = len(before), before.shape[1:3]
     figure = new_figure(12.0, rows * (4.0 * height / width + 0.1) + 3.0)
-    top, bottom = figure.subfigures(2, 1, height_ratios=[rows * (4.0 * height / width + 0.1) + 0.3, 2.7])
+    top, bottom = np.ravel(
+        figure.subfigures(2, 1, height_ratios=[rows * (4.0 * height / width + 0.1) + 0.3, 2.7])
+    )
     panels = top.subplots(rows, 3, squeeze=False)
     for row, trio in zip(panels, zip(before, expected, after, strict=True), strict=True):
         for axes, image in zip(row, trio, strict=True):
@@ -111,7 +116,7 @@ def plot_film(arena: Arena, poses: Float[np.ndarray, "frames 3"], seen: Views, d
     _check_pairs(seen, dreamt)
     frames = np.unique(np.linspace(0, len(poses) - 1, min(6, len(poses))).astype(int))
     figure = new_figure(13.0, 4.6)
-    left, right = figure.subfigures(1, 2, width_ratios=[4.2, 8.8])
+    left, right = np.ravel(figure.subfigures(1, 2, width_ratios=[4.2, 8.8]))
     plan = left.subplots()
     tidy_room(plan, title="the dreamt way")
     draw_surfaces(plan, arena)
@@ -137,6 +142,59 @@ def plot_film(arena: Arena, poses: Float[np.ndarray, "frames 3"], seen: Views, d
         row[0].set_ylabel(f"{index + 1}", fontsize=TINY, color=INK, rotation=0, ha="right", va="center")
     for axes, name in zip(panels[0], ("imagined", "seen there"), strict=True):
         axes.set_title(name, fontsize=TINY, color=INK)
+    return figure
+
+
+def plot_surprise(
+    arena: Arena,
+    views: Views,
+    found: Surprise,
+    where: Float[np.ndarray, "2"],
+    metres: Callable[[Float[np.ndarray, "places 2"]], Float[np.ndarray, "places 2"]],
+) -> Figure:
+    """Draw some views, what surprises in them, and over the changed room where all of them place it.
+
+    Parameters
+    ----------
+    arena
+        The room as it is now.
+    views, found
+        What is seen, and what surprises in it.
+    where
+        The place, m.
+    metres
+        Lays places of the map in the room.
+    """
+    shown = np.argsort(-found.pixels.max(axis=(1, 2)), kind="stable")[:: max(1, len(views) // 8)][:5]
+    figure = new_figure(13.0, 4.8)
+    left, right = np.ravel(figure.subfigures(1, 2, width_ratios=[8.0, 5.0]))
+    panels = left.subplots(len(shown), 2, squeeze=False)
+    for row, view in zip(panels, shown, strict=True):
+        _show(row[0], views[view])
+        row[1].imshow(
+            found.pixels[view] / found.threshold, cmap="magma", vmin=0, vmax=2, interpolation="nearest"
+        )
+        row[1].set(xticks=[], yticks=[])
+        row[1].spines[:].set_visible(False)
+    panels[0, 0].set_title("seen", fontsize=TINY, color=INK)
+    panels[0, 1].set_title("surprise (white: twice the threshold)", fontsize=TINY, color=INK)
+    plan = right.subplots()
+    tidy_room(plan, title=f"where, by {int(found.alarms.sum())} of {len(views)} views")
+    if found.alarms.any():
+        pooled = found.plan()
+        x, y = np.meshgrid(pooled.x, pooled.y)
+        laid = metres(np.column_stack([x.ravel(), y.ravel()])).reshape(*x.shape, 2)
+        mesh = plan.pcolormesh(
+            laid[:, :, 0], laid[:, :, 1], pooled.share, cmap="magma", shading="gouraud", zorder=0
+        )
+        colour_bar(plan, mesh, "surprised in its direction")
+    draw_surfaces(plan, arena)
+    for text in plan.texts:
+        text.set_visible(False)
+    plan.plot(
+        *where, "o", markersize=11, markerfacecolor="none", markeredgecolor=GOOD, markeredgewidth=2, zorder=9
+    )
+    frame_room(plan, arena.bounds, 0.1)
     return figure
 
 
