@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -14,7 +15,19 @@ from arena.rooms.arena import Arena
 from cogmap.errors import CogmapError
 from cogmap.imagination.surprise import Surprise
 from cogmap.plots.rooms.room import draw_arrows, draw_surfaces, frame_room
-from cogmap.plots.style import BAD, GOOD, INK, SOFT, TINY, colour_bar, new_figure, new_panels, tidy, tidy_room
+from cogmap.plots.style import (
+    BAD,
+    GOOD,
+    INK,
+    SOFT,
+    TINY,
+    colour_bar,
+    new_figure,
+    new_panels,
+    tidy,
+    tidy_legend,
+    tidy_room,
+)
 
 Views = UInt8[np.ndarray, "views height width 3"]
 GAIN = 4
@@ -55,9 +68,8 @@ def plot_expectations(before: Views, expected: Views, after: Views, steps: pd.Da
     _check_pairs(expected, after)
     rows, (height, width) = len(before), before.shape[1:3]
     figure = new_figure(12.0, rows * (4.0 * height / width + 0.1) + 3.0)
-    top, bottom = np.ravel(
-        figure.subfigures(2, 1, height_ratios=[rows * (4.0 * height / width + 0.1) + 0.3, 2.7])
-    )
+    parts: Any = figure.subfigures(2, 1, height_ratios=[rows * (4.0 * height / width + 0.1) + 0.3, 2.7])
+    top, bottom = parts
     panels = top.subplots(rows, 3, squeeze=False)
     for row, trio in zip(panels, zip(before, expected, after, strict=True), strict=True):
         for axes, image in zip(row, trio, strict=True):
@@ -107,7 +119,7 @@ def plot_dream_errors(arena: Arena, dreams: pd.DataFrame) -> Figure:
             ranked, np.linspace(0, 1, len(ranked)), color=colour, label=f"{name}: {np.median(ranked):.1f}"
         )
     tidy(share, x="PSNR (dB)", y="share of views below", title="median by method (dB)")
-    share.legend(fontsize=TINY, frameon=False)
+    tidy_legend(share, loc="beside")
     return figure
 
 
@@ -116,7 +128,8 @@ def plot_film(arena: Arena, poses: Float[np.ndarray, "frames 3"], seen: Views, d
     _check_pairs(seen, dreamt)
     frames = np.unique(np.linspace(0, len(poses) - 1, min(6, len(poses))).astype(int))
     figure = new_figure(13.0, 4.6)
-    left, right = np.ravel(figure.subfigures(1, 2, width_ratios=[4.2, 8.8]))
+    parts: Any = figure.subfigures(1, 2, width_ratios=[4.2, 8.8])
+    left, right = parts
     plan = left.subplots()
     tidy_room(plan, title="the dreamt way")
     draw_surfaces(plan, arena)
@@ -167,7 +180,8 @@ def plot_surprise(
     """
     shown = np.argsort(-found.pixels.max(axis=(1, 2)), kind="stable")[:: max(1, len(views) // 8)][:5]
     figure = new_figure(13.0, 4.8)
-    left, right = np.ravel(figure.subfigures(1, 2, width_ratios=[8.0, 5.0]))
+    parts: Any = figure.subfigures(1, 2, width_ratios=[8.0, 5.0])
+    left, right = parts
     panels = left.subplots(len(shown), 2, squeeze=False)
     for row, view in zip(panels, shown, strict=True):
         _show(row[0], views[view])
