@@ -23,7 +23,8 @@ def panoramic_flow(
     # at half the resolution: a quarter, the preset's own, doubles the error of a dream's place
     search.setFinestScale(1)
     grey = [wrapped(cv2.cvtColor(view, cv2.COLOR_RGB2GRAY)) for view in (first, second)]
-    return np.asarray(search.calc(grey[0], grey[1], None)[:, MARGIN:-MARGIN])
+    flow = search.calc(grey[0], grey[1], np.zeros((*grey[0].shape, 2), np.float32))
+    return np.asarray(flow[:, MARGIN:-MARGIN], np.float32)
 
 
 def wrapped(image: np.ndarray) -> np.ndarray:

@@ -11,7 +11,6 @@ from jaxtyping import Float, Int
 
 from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
-from cogmap.features.compass import turns
 from cogmap.features.panorama import PanoramaCode
 from cogmap.features.strips import strips
 from cogmap.graph.affine_weights import affine_weights
@@ -68,12 +67,14 @@ class RelaxedPlaces:
     ----------
     places_, headings_
         Of the remembered views, (views, 2) in the map's metric frame and (views,) rad.
+    mirrored_
+        Whether phase grows to the right.
     """
 
     def __init__(
         self, code: PanoramaCode, places: Float[np.ndarray, "views 2"], usual: _Usual, *, mirrored: bool
     ) -> None:
-        self._code, self.places_, self._usual, self._mirrored = code, places, usual, mirrored
+        self._code, self.places_, self._usual, self.mirrored_ = code, places, usual, mirrored
 
     @classmethod
     def learn(
@@ -127,7 +128,7 @@ class RelaxedPlaces:
     @property
     def headings_(self) -> Float[np.ndarray, "views"]:
         """Headings of the remembered views in the map's frame, rad."""
-        return -self._code.headings_ if self._mirrored else self._code.headings_
+        return -self._code.headings_ if self.mirrored_ else self._code.headings_
 
     def locate(self, views: Any, recalled: Float[np.ndarray, "views 2"]) -> Located:
         """Place panoramas, given the positions that the map recalls of them.
@@ -142,7 +143,7 @@ class RelaxedPlaces:
         position = np.einsum("vk,vkc->vc", weights, self.places_[indices])
         north = np.where(indices < 0, indices[:, :1], indices)[:, :NORTH]
         heading, unlike = self._code.compare(seen, north)
-        phase = wrap_angle(-heading if self._mirrored else heading)
+        phase = wrap_angle(-heading if self.mirrored_ else heading)
         unusual = np.sqrt(unlike / self._usual.misfit)
         return Located(position, phase, np.maximum(near.distances[:, -1] / self._usual.apart, unusual))
 
@@ -161,7 +162,7 @@ class RelaxedPlaces:
         """Give all that was learnt, by name."""
         own = {
             "positions": self.places_,
-            "mirrored": np.array(self._mirrored),
+            "mirrored": np.array(self.mirrored_),
             "usual": np.array(self._usual),
         }
         return {**self._code.state(), **own}
