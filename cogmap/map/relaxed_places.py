@@ -152,7 +152,7 @@ class RelaxedPlaces:
         """Tell by how much (rad, as phase) to turn from each view to look as another from there does."""
         pairs = np.repeat(np.arange(len(views))[:, None], 2, axis=1)
         turned = turns(strips(others).grey, pairs, strips(views).grey)
-        return -turned if self._mirrored else turned
+        return -turned if self.mirrored_ else turned
 
     def nearest(self, views: Any) -> Int[np.ndarray, "views"]:
         """Tell which remembered view looks most like each of these from any heading."""
