@@ -9,7 +9,7 @@ from cogmap.errors import CogmapError
 
 CLOSE = 0.04
 """Share of a decision's way from the goal within which it counts as reached; of its turn a sixth of that."""
-CLEAR = 20.0
+CLEAR = 2.0
 """Times its own noise by which a motion must answer to commands."""
 
 
@@ -35,12 +35,11 @@ class Steering:
         self._motor = motor
         total = motor.response_.sum(axis=0)
         along, strength, _ = np.linalg.svd(total[:2])
-        if not (
-            strength[0] > CLEAR * motor.noise_[:2].min() and np.abs(total[2]).max() > CLEAR * motor.noise_[2]
-        ):
+        turns = np.abs(total[2]).max() > CLEAR * motor.noise_[2]
+        if not (turns and strength[0] > CLEAR * motor.noise_[:2].min()):
             raise CogmapError(
-                "commands hardly move or turn this body, as far as its motor model knows; babble longer, with "
-                "both numbers of the command"
+                "commands hardly move or turn this body, as far as its motor model knows; "
+                "babble longer, with both numbers of the command"
             )
         self.course = float(np.arctan2(along[1, 0], along[0, 0]))
         inverse = np.linalg.pinv(total, rcond=1e-3)

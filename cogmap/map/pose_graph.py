@@ -121,7 +121,7 @@ def _round(
         slope[:, 2] *= LEVEL
         slope[:, :2] += back @ np.column_stack([pull.real, pull.imag])
         slope[:, 2] -= forth @ (counted * step.real * across)
-        return slope
+        return np.asarray(slope)
 
     def normal(flat: Float[np.ndarray, "_"]) -> Float[np.ndarray, "_"]:
         moved = flat.reshape(views, 3)
@@ -136,9 +136,9 @@ def _round(
     held = stiff + back.power(2) @ (0.5 * (paced + counted))
     scale = np.column_stack([held, held, LEVEL * stiff + forth.power(2) @ counted]).ravel()
     system = LinearOperator((3 * views, 3 * views), matvec=normal)
-    moved = cg(system, downhill, rtol=1e-4, maxiter=MOST_ITERATIONS, M=sp.diags_array(1 / scale))[0]
-    moved = moved.reshape(views, 3)
-    return places + length * (moved[:, 0] + 1j * moved[:, 1]), added + moved[:, 2]
+    found = cg(system, downhill, rtol=1e-4, maxiter=MOST_ITERATIONS, M=sp.diags_array(1 / scale))[0]
+    right, up, turned = found.reshape(views, 3).T
+    return places + length * (right + 1j * up), added + turned
 
 
 def _cauchy(residuals: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "steps"]:
