@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, UInt8
@@ -16,6 +16,7 @@ from cogmap.map.relaxed_places import RelaxedPlaces
 Views = UInt8[np.ndarray, "views height width 3"]
 
 
+@runtime_checkable
 class Percept(Protocol):
     """Tells where views were taken."""
 

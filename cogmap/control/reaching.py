@@ -130,7 +130,7 @@ class Reaching:
         self._position[live], self._phase[live] = position, phase
         self.outcomes_[live[self._unknown[live] >= PATIENCE]] = Outcome.LOST
         self.outcomes_[live[self._held[live] >= PATIENCE]] = Outcome.STUCK
-        for explorer in live[~began]:
+        for explorer in live[~began].tolist():
             self._plan(explorer)
 
     def _plan(self, explorer: int) -> None:
@@ -145,8 +145,8 @@ class Reaching:
         steering = self._steering
         position, phase = steering.coming(self._position[live], self._phase[live], self._last[live])
         target = np.array(
-            [self._corner(explorer, here) for explorer, here in zip(live, position, strict=True)]
-        )
+            [self._corner(explorer, here) for explorer, here in zip(live.tolist(), position, strict=True)]
+        ).reshape(-1, 2)  # also of none, where all got lost at once
         last = np.array([len(self._ahead[explorer]) == 1 for explorer in live])
         step = target - position
         far = np.linalg.norm(step, axis=1)

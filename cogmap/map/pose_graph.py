@@ -135,7 +135,7 @@ def _round(
     stiff = np.asarray(bend.power(2).sum(axis=0))
     held = stiff + back.power(2) @ (0.5 * (paced + counted))
     scale = np.column_stack([held, held, LEVEL * stiff + forth.power(2) @ counted]).ravel()
-    system = LinearOperator((3 * views, 3 * views), matvec=normal)
+    system = LinearOperator((3 * views, 3 * views), matvec=normal, dtype=np.float64)
     moved = cg(system, downhill, rtol=1e-4, maxiter=MOST_ITERATIONS, M=sp.diags_array(1 / scale))[0]
     moved = moved.reshape(views, 3)
     return places + length * (moved[:, 0] + 1j * moved[:, 1]), added + moved[:, 2]
