@@ -100,6 +100,7 @@ class Reaching:
         if len(live):
             self._look(live, views[live])
             live = live[self.outcomes_[live] == Outcome.ON_THE_WAY]
+        if len(live):  # not all of them got lost or stuck
             commands[live] = self._decide(live, views[live])
             self._before[live], self._last[live] = self._last[live], commands[live]
             stopped = self.outcomes_[live] != Outcome.ON_THE_WAY
@@ -146,7 +147,7 @@ class Reaching:
         position, phase = steering.coming(self._position[live], self._phase[live], self._last[live])
         target = np.array(
             [self._corner(explorer, here) for explorer, here in zip(live.tolist(), position, strict=True)]
-        ).reshape(-1, 2)  # also of none, where all got lost at once
+        )
         last = np.array([len(self._ahead[explorer]) == 1 for explorer in live])
         step = target - position
         far = np.linalg.norm(step, axis=1)
