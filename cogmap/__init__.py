@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cogmap import cells, evaluation, features, graph, navigation, plots, shape, testing
+    from cogmap.control import MotorModel, Reacher
     from cogmap.errors import CogmapError, UnlikeArithmeticWarning, UntrustedMapWarning
     from cogmap.evaluation.scoring import score
     from cogmap.features import BagOfWords
@@ -24,7 +25,9 @@ __all__ = [
     "EvenMemory",
     "LandmarkIsomap",
     "Localiser",
+    "MotorModel",
     "Plan",
+    "Reacher",
     "UnlikeArithmeticWarning",
     "UntrustedMapWarning",
     "VisualRoadmap",
@@ -42,6 +45,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "control": ("MotorModel", "Reacher"),
     "errors": ("CogmapError", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
     "evaluation.scoring": ("score",),
     "features": ("BagOfWords",),

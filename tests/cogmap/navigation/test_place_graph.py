@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import networkx as nx
 import numpy as np
 import pytest
@@ -36,7 +38,7 @@ def test_ways_go_around_what_nobody_visited(ring: PlaceGraph) -> None:
     assert shortest < length(way) < 1.25 * shortest
     assert not ring.is_free(start, goal)
     assert not ring.sees(start, goal)
-    for one, other in zip(way[:-1], way[1:], strict=True):
+    for one, other in pairwise(way):
         assert ring.is_free(one, other)
 
 
@@ -61,7 +63,9 @@ def test_a_margin_is_kept_where_there_is_room(ring: PlaceGraph) -> None:
     start, goal = np.array([-1.5, 1.5]), np.array([1.5, -1.5])
     hole = box(-1, -1, 1, 1)
     assert LineString(shy.plan(start, goal)).distance(hole) > 0.3
-    assert LineString(PlaceGraph(ring.position, reach=0.15, margin=0.01).plan(start, goal)).distance(hole) < 0.2
+    assert (
+        LineString(PlaceGraph(ring.position, reach=0.15, margin=0.01).plan(start, goal)).distance(hole) < 0.2
+    )
 
 
 def test_ways_are_dijkstras(ring: PlaceGraph) -> None:
