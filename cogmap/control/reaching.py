@@ -12,6 +12,7 @@ from arena.motions.policy import Sensed
 from cogmap.control.percept import Percept, Views
 from cogmap.control.steering import Steering
 from cogmap.errors import CogmapError
+from cogmap.map.activity import Activity
 from cogmap.navigation.place_graph import PlaceGraph
 
 KNOWN = 4.0
@@ -52,6 +53,22 @@ REASONS = {
 }
 
 
+def check_known(seen: Activity) -> None:
+    """Refuse views of nowhere that is remembered.
+
+    Raises
+    ------
+    CogmapError
+        Which of them looks least like anything, and how unlike it is.
+    """
+    novelty = np.asarray(seen.novelty)
+    if novelty.max() > KNOWN:
+        raise CogmapError(
+            f"goal {novelty.argmax()} is nothing that this map remembers: what looks most like it is "
+            f"{novelty.max():.1f} times as unlike as usual; give a view from the room that was learnt"
+        )
+
+
 class Reaching:
     """A policy (`arena.Policy`) that goes where images were taken; `Reacher.towards` makes it.
 
@@ -70,12 +87,7 @@ class Reaching:
         self, percept: Percept, ways: PlaceGraph, steering: Steering, goals: Views, *, single: bool = False
     ) -> None:
         count, there = len(goals), percept.perceive(goals)
-        unlike = np.asarray(there.novelty)
-        if unlike.max() > KNOWN:
-            raise CogmapError(
-                f"goal {unlike.argmax()} is nothing that this map remembers: what looks most like it is "
-                f"{unlike.max():.1f} times as unlike as usual; give a view from the room that was learnt"
-            )
+        check_known(there)
         self._percept, self._ways, self._steering, self._single = percept, ways, steering, single
         self._goals, self._goal = goals, there.position.astype(np.float64)
         self._last, self._before = np.zeros((count, 2)), np.zeros((count, 2))

@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import networkx as nx
 import numpy as np
 import pytest
@@ -36,7 +38,7 @@ def test_ways_go_around_what_nobody_visited(ring: PlaceGraph) -> None:
     assert shortest < length(way) < 1.25 * shortest
     assert not ring.is_free(start, goal)
     assert not ring.sees(start, goal)
-    for one, other in zip(way[:-1], way[1:], strict=True):
+    for one, other in pairwise(way):
         assert ring.is_free(one, other)
 
 
