@@ -17,7 +17,7 @@ WALKS = 0.5
 """Mean cosine between steps and headings from which on the views come in the order of a walk."""
 LEVEL = 300.0
 """How much a heading counts that its neighbours contradict, beside a step of the same angle."""
-LENGTH = 0.03
+LENGTH = 0.1
 """How much the length of a step counts beside its direction: bodies keep to a direction, not to a pace."""
 ROUNDS = 3
 """Of weights that count outliers less."""

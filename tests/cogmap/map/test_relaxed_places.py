@@ -6,7 +6,6 @@ import pytest
 from arena import Arena, Brownian, Camera, Recording, explore
 from arena.angles import wrap_angle
 from cogmap import CogmapError
-from cogmap.map import pose_graph
 from cogmap.map.relaxed_places import Located, RelaxedPlaces, _alike
 
 CORNERS = ((-0.8, -0.6), (0.8, -0.6), (0.8, 0.6), (-0.8, 0.6))
@@ -37,13 +36,6 @@ def walked(camera: Camera, views: int, seed: int) -> Recording:
 
 
 @pytest.fixture(scope="module")
-def few_iterations():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pose_graph, "MOST_ITERATIONS", 60)
-        yield
-
-
-@pytest.fixture(scope="module")
 def walk(camera: Camera) -> Recording:
     return walked(camera, 700, 0)
 
@@ -54,7 +46,7 @@ def fresh(camera: Camera) -> Recording:
 
 
 @pytest.fixture(scope="module")
-def relaxed(walk: Recording, few_iterations: None) -> RelaxedPlaces:  # noqa: ARG001
+def relaxed(walk: Recording) -> RelaxedPlaces:
     return RelaxedPlaces.learn(walk.views, *recalled(walk.poses))
 
 
@@ -71,7 +63,7 @@ def test_places_and_headings_are_finer_than_those_recalled(
     ):
         before, after = errors(poses, *coarse), errors(poses, *fine)
         assert after[0] < 0.35 * before[0]
-        assert after[1] < 0.65 * before[1]
+        assert after[1] < 0.75 * before[1]
 
 
 def test_a_walk_straightens_what_neighbours_cannot(relaxed, walk: Recording) -> None:
