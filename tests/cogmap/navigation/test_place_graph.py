@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -21,9 +23,7 @@ def test_a_way_goes_round_what_was_never_visited(ring: np.ndarray) -> None:
     start, goal = np.array([-1.5, 0.05]), np.array([1.5, 0.05])
     way = graph.plan(start, goal)
     np.testing.assert_array_equal(way[[0, -1]], [start, goal])
-    points = np.concatenate(
-        [a + np.linspace(0, 1, 50)[:, None] * (b - a) for a, b in zip(way[:-1], way[1:], strict=True)]
-    )
+    points = np.concatenate([a + np.linspace(0, 1, 50)[:, None] * (b - a) for a, b in pairwise(way)])
     assert np.hypot(*points.T).min() > 1
     # two tangents and the arc between them
     reach = 1.5
@@ -40,7 +40,7 @@ def test_a_free_way_is_straight_and_a_margin_is_kept(ring: np.ndarray) -> None:
 
 
 def test_separate_parts_have_no_way(ring: np.ndarray) -> None:
-    apart = np.concatenate([ring, ring + [9.0, 0.0]])
+    apart = np.concatenate([ring, ring + np.array([9.0, 0.0])])
     with pytest.raises(CogmapError, match="separate parts"):
         PlaceGraph(apart).plan(np.array([-1.5, 0.0]), np.array([9.0, 1.5]))
     with pytest.raises(CogmapError, match="one remembered view"):
