@@ -100,6 +100,7 @@ class Reaching:
         if len(live):
             self._look(live, views[live])
             live = live[self.outcomes_[live] == Outcome.ON_THE_WAY]
+        if len(live):  # not all of them got lost or stuck
             commands[live] = self._decide(live, views[live])
             self._before[live], self._last[live] = self._last[live], commands[live]
             stopped = self.outcomes_[live] != Outcome.ON_THE_WAY
@@ -130,7 +131,7 @@ class Reaching:
         self._position[live], self._phase[live] = position, phase
         self.outcomes_[live[self._unknown[live] >= PATIENCE]] = Outcome.LOST
         self.outcomes_[live[self._held[live] >= PATIENCE]] = Outcome.STUCK
-        for explorer in live[~began]:
+        for explorer in live[~began].tolist():
             self._plan(explorer)
 
     def _plan(self, explorer: int) -> None:
@@ -145,7 +146,7 @@ class Reaching:
         steering = self._steering
         position, phase = steering.coming(self._position[live], self._phase[live], self._last[live])
         target = np.array(
-            [self._corner(explorer, here) for explorer, here in zip(live, position, strict=True)]
+            [self._corner(explorer, here) for explorer, here in zip(live.tolist(), position, strict=True)]
         )
         last = np.array([len(self._ahead[explorer]) == 1 for explorer in live])
         step = target - position

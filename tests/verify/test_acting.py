@@ -1,4 +1,4 @@
-"""`make verify`: imagining, expecting, being surprised and reaching, in five rooms, each figure with its bar."""
+"""`make verify`: imagining, expecting, being surprised, reaching in five rooms, each figure with its bar."""
 
 from pathlib import Path
 
