@@ -232,7 +232,7 @@ class Imagination:
         places = self.places
         if len(places.phase) < 4 * VISIT:
             raise CogmapError(
-                f"{len(places.phase)} remembered views do not tell what is usual; remember at least {4 * VISIT}"
+                f"{len(places.phase)} views do not tell what is usual; remember at least {4 * VISIT}"
             )
         chosen = np.unique(np.linspace(0, len(places.phase) - 1, CALIBRATED).astype(int))
         views = np.stack([places.views[view] for view in chosen])

@@ -14,7 +14,7 @@ from cogmap.imagination.turning import Painted
 FLOOR = 4.0
 """Difference (grey levels) that is usual anywhere."""
 SLIP = 0.03
-"""By how many pixels an edge is off, for a target as far from memory as its spacing; it grows as the square."""
+"""By how many pixels an edge is off, for a target as far from memory as its spacing; as the square beyond."""
 DOUBT = 8.0
 """By how much the variance of a dream is larger than that of its sources, which err alike."""
 PATCH = 11 / 360

@@ -28,8 +28,8 @@ STRAIGHT, LONG = 0.1, 0.08
 def expectation(conditions: Conditions) -> Result:
     """Expect the next view while babbling, from what is seen and what is commanded.
 
-    The motor model is learnt from another spell of babbling. `ahead_psnr_db` is the median over straight steps
-    of usual length, which truth picks and nothing else; `all_psnr_db` that over all steps, whatever the
+    The motor model is learnt from another spell of babbling. `ahead_psnr_db` is the median over straight
+    steps of usual length, which truth picks and nothing else; `all_psnr_db` that over all steps, whatever the
     command and whatever was bumped into. Beside it persistence, which expects to see the same view again, and
     the same view turned to the direction that the body will face.
     """
@@ -76,4 +76,4 @@ def expectation(conditions: Conditions) -> Result:
 
 
 def _spread(rows: Int[np.ndarray, "rows"], count: int) -> Int[np.ndarray, "_"]:
-    return rows[np.unique(np.linspace(0, len(rows) - 1, min(count, len(rows))).astype(int))]
+    return np.asarray(rows[np.unique(np.linspace(0, len(rows) - 1, min(count, len(rows))).astype(int))])

@@ -52,7 +52,11 @@ def few_pairs(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_each_says_what_it_does_and_what_it_is_about() -> None:
     found = listing()
-    assert {entry["about"] for entry in found} == {"Experiments of the paper", "Controls of the cells"}
+    assert {entry["about"] for entry in found} == {
+        "Experiments of the paper",
+        "Controls of the cells",
+        "What an explorer does with its map: imagine, expect and reach",
+    }
     assert all(entry["what it does"].endswith(".") for entry in found)
     assert len(found) == len(experiments()) >= 17
 

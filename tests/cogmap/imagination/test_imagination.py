@@ -129,10 +129,8 @@ def test_recognising_corrects_a_wrong_percept(
 ) -> None:
     views, poses = remembered
     off = copy(dream.cmap)
-    off.poses = {
-        **off.poses,
-        **{v.tobytes(): p + [0.03, -0.02, 0.01] for v, p in zip(views[-10:], poses[-10:])},
-    }
+    wrong = poses[-10:] + np.array([0.03, -0.02, 0.01])
+    off.poses = {**off.poses, **{v.tobytes(): p for v, p in zip(views[-10:], wrong, strict=True)}}
     found = Imagination(off, memory=dream.memory).recognise(views[-10:])
     right, phase = dream.perceive(views[-10:])
     assert np.median(np.linalg.norm(found[:, :2] - right, axis=1)) < 0.015
