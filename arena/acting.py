@@ -48,7 +48,6 @@ def act_and_look(explorers: Explorers, policy: Policy, dt: float) -> Iterator[St
     if not 0 < dt < math.inf:
         raise ArenaError(f"dt is {dt} s; give a positive time from a decision to the next")
     everyone = going = np.arange(explorers.count)
-    touched = np.zeros(explorers.count, bool)
     while len(going):
         poses, sensed = explorers.poses(everyone), explorers.sense(going)
         told = np.asarray(policy(sensed), float)
@@ -62,9 +61,9 @@ def act_and_look(explorers: Explorers, policy: Policy, dt: float) -> Iterator[St
                 "a policy gave a command that is not finite; give two numbers, or two NaN to stop"
             )
         explorers.act(going, explorers.body.velocities(commands[going]), dt)
-        touched[:] = False
+        touched = np.zeros(explorers.count, bool)
         touched[going] = explorers.touched(going)
-        yield Step(poses, sensed, commands, touched.copy())
+        yield Step(poses, sensed, commands, touched)
 
 
 class Journeys(NamedTuple):

@@ -85,7 +85,7 @@ def learn(views: int) -> Figures:
 def walk(views: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Give the poses of one explorer and what it smells."""
     rng = np.random.default_rng(seed)
-    times, poses, _ = Brownian().walk(ROOM, Disc(), views, rng)
+    times, poses, *_ = Brownian().walk(ROOM, Disc(), views, rng)
     return poses, Nose().smell(ROOM.odours.concentration(poses[:, :2]), times, rng)
 
 

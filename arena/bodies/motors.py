@@ -73,7 +73,7 @@ class Motors:
         late[which] = commands
         self._waiting.append((self._body.delay, late))
         parts, left = list[tuple[float, np.ndarray]](), dt
-        while left > INSTANT or not parts:
+        while left > INSTANT:
             due = self._waiting[0][0] if self._waiting else math.inf
             part = left if due > left - INSTANT else due
             parts.append((part, self._obeyed[which]))

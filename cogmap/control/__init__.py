@@ -1,4 +1,4 @@
-"""Control: what commands do, learnt from what was seen, and ways walked by it; nothing here is told a pose."""
+"""Control: what commands do, and ways walked by it, from what is seen; nothing here is told a pose."""
 
 from cogmap.control.motor_model import MotorModel
 from cogmap.control.reacher import Reacher

@@ -58,11 +58,11 @@ class Reacher:
         if self.cmap.relaxed_places_ is None:
             raise CogmapError(f"this map's places are too coarse to act on: {self.cmap.refine_reason_}")
         there = self.cmap.perceive(views)
-        assert there.novelty is not None
-        if there.novelty.max() > KNOWN:
+        novelty = np.asarray(there.novelty)
+        if novelty.max() > KNOWN:
             raise CogmapError(
-                f"goal {there.novelty.argmax()} is nothing that this map remembers: the views that look most like "
-                f"it are {there.novelty.max():.1f} times as far as usual; give a view from the room that was learnt"
+                f"goal {novelty.argmax()} is nothing that this map remembers: what looks most like it is "
+                f"{novelty.max():.1f} times as unlike as usual; give a view from the room that was learnt"
             )
         return Reaching(self.cmap, self.ways, self.steering, there, single=goal.ndim == 3)
 

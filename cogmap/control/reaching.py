@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from typing import Protocol
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -12,7 +13,6 @@ from arena.motions.policy import Sensed
 from cogmap.control.steering import Steering
 from cogmap.errors import CogmapError
 from cogmap.map.activity import Activity
-from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.navigation.place_graph import PlaceGraph
 
 KNOWN = 4.0
@@ -53,6 +53,13 @@ REASONS = {
 }
 
 
+class Percept(Protocol):
+    """Tells where views were taken, as a `CognitiveMap` does."""
+
+    def perceive(self, views: np.ndarray) -> Activity:
+        """Give at least `position`, `phase` and `novelty`."""
+
+
 class Reaching:
     """A policy (`arena.Policy`) that goes where images were taken; `Reacher.towards` makes it.
 
@@ -68,7 +75,7 @@ class Reaching:
     """
 
     def __init__(
-        self, cmap: CognitiveMap, ways: PlaceGraph, steering: Steering, goal: Activity, *, single: bool
+        self, cmap: Percept, ways: PlaceGraph, steering: Steering, goal: Activity, *, single: bool
     ) -> None:
         count = len(goal)
         self._cmap, self._ways, self._steering, self._single = cmap, ways, steering, single
@@ -106,13 +113,12 @@ class Reaching:
     def _look(self, live: Int[np.ndarray, "live"], views: np.ndarray) -> None:
         """Tell where these are, and whether they moved as commanded."""
         seen = self._cmap.perceive(views)
-        assert seen.novelty is not None
         position, phase = seen.position.astype(np.float64), seen.phase.astype(np.float64)
         foretold, facing = self._steering.moved(
             self._position[live], self._phase[live], self._last[live], self._before[live]
         )
         began = np.isfinite(self._phase[live])
-        unknown = seen.novelty > KNOWN
+        unknown = np.asarray(seen.novelty) > KNOWN
         self._unknown[live] = np.where(unknown, self._unknown[live] + 1, 0)
         bridged = unknown & began
         position[bridged], phase[bridged] = foretold[bridged], facing[bridged]

@@ -148,6 +148,11 @@ class RelaxedPlaces:
         unusual = np.sqrt(unlike / self._usual.misfit)
         return Located(position, phase, np.maximum(near.distances[:, -1] / self._usual.apart, unusual))
 
+    def nearest(self, views: Any) -> Int[np.ndarray, "views"]:
+        """Tell which remembered view looks most like each of these from any heading."""
+        seen = self._code.place(strips(views))
+        return nearest_points(self._code.places_, 1, queries=seen).indices[:, 0]
+
     def state(self) -> dict[str, np.ndarray]:
         """Give all that was learnt, by name."""
         own = {

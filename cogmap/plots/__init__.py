@@ -1,5 +1,8 @@
 """The figures, from results only: arrays in, a matplotlib Figure out."""
 
+from cogmap.plots.acting.catchment import plot_catchment
+from cogmap.plots.acting.journeys import plot_journeys
+from cogmap.plots.acting.reached import plot_reached
 from cogmap.plots.cells.afferents import plot_afferents
 from cogmap.plots.cells.cell_types import plot_cell_types
 from cogmap.plots.cells.cue_control import plot_cue_control
@@ -34,6 +37,7 @@ __all__ = [
     "plot_barcode_grid",
     "plot_barcodes",
     "plot_cases",
+    "plot_catchment",
     "plot_cell_types",
     "plot_compass",
     "plot_confusion",
@@ -43,6 +47,7 @@ __all__ = [
     "plot_examples",
     "plot_goals",
     "plot_grid_cells",
+    "plot_journeys",
     "plot_likeness",
     "plot_localisation",
     "plot_metric_map",
@@ -50,6 +55,7 @@ __all__ = [
     "plot_position",
     "plot_quasi_metric",
     "plot_rate_maps",
+    "plot_reached",
     "plot_room",
     "plot_routes",
     "plot_sheet",

@@ -80,7 +80,7 @@ def draw_views(
         tidy(axes, title="" if poses is None else _pose(poses[index]))
         axes.title.set_fontsize(SMALL - 1)
         if panoramic:
-            _draw_panorama(axes, views[index])
+            draw_panorama(axes, views[index])
         else:
             axes.imshow(views[index], interpolation="nearest")
         axes.tick_params(labelbottom=index + columns >= count, labelleft=index % columns == 0)
@@ -88,7 +88,8 @@ def draw_views(
     figure.supylabel("elevation (°)" if panoramic else "row (pixels)", fontsize=SMALL, color=INK)
 
 
-def _draw_panorama(axes: Axes, view: UInt8[np.ndarray, "height width 3"]) -> None:
+def draw_panorama(axes: Axes, view: UInt8[np.ndarray, "height width 3"]) -> None:
+    """Draw a panorama with its azimuth and elevation in degrees."""
     # Ticks in degrees above the horizon.
     elevations = np.array([-60, -40, -20, 0, 20, 40, 60])
     half = 180 * view.shape[0] / view.shape[1]

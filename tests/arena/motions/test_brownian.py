@@ -38,7 +38,7 @@ def test_17000_views_cover_place_and_heading_evenly(arena: str, seed: int) -> No
 
 def test_views_follow_each_other_at_the_spacing() -> None:
     motion = Brownian()
-    times, poses, _ = walk(motion, 3000)
+    times, poses, *_ = walk(motion, 3000)
     moved, turned = np.hypot(*np.diff(poses[:, :2], axis=0).T), turns(poses)
     assert times[0] == 0
     assert (np.diff(times) > 0).all()
@@ -55,7 +55,7 @@ def test_views_follow_each_other_at_the_spacing() -> None:
 
 
 def test_body_stays_in_free_space_and_within_its_speed() -> None:
-    times, poses, _ = walk(Brownian(), 2000, "pillar")
+    times, poses, *_ = walk(Brownian(), 2000, "pillar")
     free = Arena.load("pillar").free_space(0.18)
     assert shapely.distance(free, shapely.points(poses[:, :2])).max() < 1e-3
     speed = np.hypot(*np.diff(poses[:, :2], axis=0).T) / np.diff(times)

@@ -43,7 +43,7 @@ def save(tmp_path: Path):
 
 def test_every_sample_is_a_view(save) -> None:
     path, heading = circle(), np.linspace(-3, 9, 500)
-    times, poses, notes = replay(Replay(path=save(**path, heading=heading)))
+    times, poses, notes, _ = replay(Replay(path=save(**path, heading=heading)))
     np.testing.assert_allclose(times, path["t"] - 7)
     np.testing.assert_array_equal(poses[:, :2], path["pos"])
     np.testing.assert_allclose(np.exp(1j * poses[:, 2]), np.exp(1j * heading))
@@ -108,7 +108,7 @@ def test_headings_turn_the_short_way_over_a_gap(save) -> None:
 
 def test_views_by_time(save) -> None:
     path = circle(500)
-    times, poses, _ = replay(Replay(path=save(**path), interval=0.1))
+    times, poses, *_ = replay(Replay(path=save(**path), interval=0.1))
     np.testing.assert_allclose(times, 0.1 * np.arange(100), atol=1e-9)
     np.testing.assert_array_equal(poses[:, :2], path["pos"][::5])
 
@@ -154,7 +154,7 @@ def test_leaving_the_room_is_told_where(save) -> None:
 
 def test_clipped_to_the_nearest_free_place(save) -> None:
     path = circle(radius=1.6)
-    _, poses, notes = replay(Replay(path=save(**path), clip=True))
+    _, poses, notes, _ = replay(Replay(path=save(**path), clip=True))
     np.testing.assert_allclose(poses[:, :2], np.clip(path["pos"], [-1.99, -1.49], [1.99, 1.49]), atol=2e-3)
     assert notes["clipped"] == (np.abs(path["pos"][:, 1]) > 1.491).sum()
     assert Arena.load("open_field").is_free(poses[:, :2], 0.009).all()

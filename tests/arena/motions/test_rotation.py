@@ -18,7 +18,7 @@ def gaps(headings: np.ndarray) -> np.ndarray:
 
 
 def test_even_turns_are_one_place_and_all_angles() -> None:
-    times, poses, _ = spin(Rotation(position=(0.5, -0.3), turns=1, jitter=0.0, turn_rate=2.0))
+    times, poses, *_ = spin(Rotation(position=(0.5, -0.3), turns=1, jitter=0.0, turn_rate=2.0))
     np.testing.assert_array_equal(poses[:, :2], [(0.5, -0.3)] * 1000)
     np.testing.assert_allclose(gaps(poses[:, 2]), 2 * np.pi / 1000, atol=1e-9)
     np.testing.assert_allclose(np.unwrap(poses[:, 2]) - poses[0, 2], 2.0 * times, atol=1e-9)
@@ -40,7 +40,7 @@ def test_jittered_headings_are_each_in_their_part_of_the_way(turns: int, body: D
 
 
 def test_it_never_turns_back_and_keeps_its_pace() -> None:
-    times, poses, _ = spin(Rotation(turns=3, turn_rate=1.5), 300)
+    times, poses, *_ = spin(Rotation(turns=3, turn_rate=1.5), 300)
     turned, lapse = np.diff(np.unwrap(poses[:, 2])), np.diff(times)
     assert (turned > 0).all()
     np.testing.assert_allclose(turned, 1.5 * lapse, atol=1e-9)

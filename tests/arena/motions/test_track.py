@@ -30,7 +30,7 @@ def test_it_turns_at_the_ends_only_and_to_either_side() -> None:
 
 
 def test_it_goes_to_and_fro_at_the_mean_speed() -> None:
-    times, poses, _ = run(Track(speed=0.3, speed_spread=0.0), 400)
+    times, poses, *_ = run(Track(speed=0.3, speed_spread=0.0), 400)
     x, straight = poses[:, 0], np.abs(poses[:, 0]) < 1.5
     pairs = straight[1:] & straight[:-1]
     speed = np.abs(np.diff(x) / np.diff(times))[pairs]
