@@ -89,7 +89,8 @@ class Reaching:
         self._motion = np.full((count, 3), np.nan)
         self._ahead: list[list[Float[np.ndarray, "2"]]] = [[] for _ in range(count)]
         self._tries, self._at_goal, self._held, self._unknown = (np.zeros(count, int) for _ in range(4))
-        self._backing, self._docked = np.zeros(count, int), np.zeros(count, bool)
+        self._backing = np.zeros(count, int)
+        self._docked, self._backwards = np.zeros(count, bool), np.zeros(count, bool)
         self.outcomes_ = np.full(count, Outcome.ON_THE_WAY, int)
 
     @property
@@ -168,7 +169,10 @@ class Reaching:
         step = target - position
         far = np.linalg.norm(step, axis=1)
         bearing = wrap_angle(np.arctan2(step[:, 1], step[:, 0]) - phase - steering.course)
-        backwards = last & (far < NEAR * steering.pace) & (np.abs(bearing) > np.pi / 2)
+        # whoever goes backwards keeps to it for a while, lest a body that coasts changes its mind for ever
+        reach = np.where(self._backwards[live], 2, 1) * NEAR * steering.pace
+        backwards = last & (far < reach) & (np.abs(bearing) > np.pi / 2)
+        self._backwards[live] = backwards
         bearing = np.where(backwards, wrap_angle(bearing + np.pi), bearing)
         forward = np.where(backwards, -far, far) * np.clip(1 - np.abs(bearing) / ALIGNED, 0, 1)
         self._tries[live] += last & (far < steering.pace) & (coasting < steering.pace)

@@ -45,6 +45,7 @@ class Steering:
                 "commands hardly move or turn this body, as far as its motor model knows; babble longer, with "
                 "both numbers of the command"
             )
+        along[:, 0] *= np.copysign(1.0, along[0, 0])  # rather where it looks than backwards
         self.course = float(np.arctan2(along[1, 0], along[0, 0]))
         inverse = np.linalg.pinv(total, rcond=1e-3)
         self._go = inverse[:, :2] @ along[:, 0]
