@@ -6,7 +6,7 @@ from enum import IntEnum
 from typing import Protocol
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float, Int
 
 from arena.angles import wrap_angle
 from arena.motions.policy import Sensed

@@ -15,8 +15,10 @@ FLOOR = 4.0
 """Difference (grey levels) that is usual anywhere."""
 SLIP = 0.08
 """By how many pixels an edge is off, for each spacing of the memory that its target is from it."""
-PATCH = 7
-"""Pixels across that are judged together."""
+DOUBT = 8.0
+"""By how much the variance of a dream is larger than that of its sources, which err alike."""
+PATCH = 11 / 360
+"""How wide a patch is that is judged as a whole, in turns."""
 BEYOND = 0.5
 """How far the plan reaches beyond the remembered places, in units of their extent."""
 CELLS = 120
@@ -127,7 +129,7 @@ def unusual(
     r"""Compare a view with what was imagined, pixel by pixel.
 
     .. math:: \sqrt{\overline{(v - D)^2} \big/ \overline{\sigma^2}},\quad
-        \sigma^2 = \sigma_0^2 + s^2 + (\epsilon d\,|\nabla D|)^2,
+        \sigma^2 = \sigma_0^2 + 8 s^2 + (\epsilon d\,|\nabla D|)^2,
 
     means over a patch; s is the spread of the sources, and edges are the less certain the farther, d, the
     nearest remembered place is, in units of the memory's spacing.
@@ -137,12 +139,13 @@ def unusual(
     across = (np.roll(imagined, -1, axis=1) - np.roll(imagined, 1, axis=1)) / 2
     down = np.gradient(imagined, axis=0)
     edges = (np.square(across) + np.square(down)).mean(axis=2)
-    variance = FLOOR**2 + np.square(painted.spread) + (SLIP * distance) ** 2 * edges
+    variance = FLOOR**2 + DOUBT * np.square(painted.spread) + (SLIP * distance) ** 2 * edges
     return np.asarray(np.sqrt(_patches(error) / _patches(variance)), np.float32)
 
 
 def _patches(values: Float32[np.ndarray, "height width"]) -> Float32[np.ndarray, "height width"]:
-    half = PATCH // 2
+    half = round(PATCH * values.shape[1] / 2)
     around = cv2.copyMakeBorder(values.astype(np.float32), 0, 0, half, half, cv2.BORDER_WRAP)
+    means = cv2.blur(around, (2 * half + 1, 2 * half + 1))[:, half : around.shape[1] - half]
     # sums that run along rows leave less than nothing behind where all is 0
-    return np.maximum(cv2.blur(around, (PATCH, PATCH))[:, half:-half], 0)
+    return np.maximum(means, 0)

@@ -11,7 +11,6 @@ from jaxtyping import Float, Int
 
 from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
-from cogmap.features.compass import turns
 from cogmap.features.panorama import PanoramaCode
 from cogmap.features.strips import strips
 from cogmap.graph.affine_weights import affine_weights
