@@ -31,11 +31,11 @@ class MotorModel:
     .. math:: d_t = \bigl(e^{-i (\theta + \Delta\theta / 2)} \Delta x, \Delta\theta\bigr)
         = M_0 u_t + M_1 u_{t-1} + A d_{t-1}
 
-    for position x, heading θ and command u; M₁ is what comes late, and A what goes on by itself: with it,
-    of second order, the model holds for bodies with mass and friction, whatever these and the gain of commands
-    are; without, A is 0. All is found by least squares in which steps that a wall or a slip spoilt count less
-    (Cauchy weights), kept as sums, so that models merge and learn on. What a command does is not known before:
-    neither which number turns and which goes, nor its sign or gain, nor whether the map is mirrored.
+    for position x, heading θ and command u; M₁ is what comes late, and A what goes on by itself: with it, of
+    second order, the model holds for bodies with mass and friction, whatever these and the gain of commands
+    are; without, A is 0. All is found by least squares in which steps that a wall or a slip spoilt count
+    less (Cauchy weights), kept as sums, so that models merge and learn on. What a command does is not known
+    before: neither which number turns and which goes, nor its sign or gain, nor whether the map is mirrored.
 
     Parameters
     ----------
@@ -128,8 +128,8 @@ class MotorModel:
     ) -> Float[np.ndarray, "bodies 3"]:
         """Foretell forward, left (the map's unit) and turn (rad) of a decision.
 
-        Commands go on when none came before, and where no motion is told it is what `previous` brings about in
-        the end.
+        Commands go on when none came before, and where no motion is told it is what `previous` brings about
+        in the end.
         """
         now, late = self.response_
         before = commands if previous is None else previous
@@ -144,7 +144,7 @@ class MotorModel:
         previous: Float[np.ndarray, "bodies 2"],
         motion: Float[np.ndarray, "bodies 3"],
     ) -> Float[np.ndarray, "decisions bodies 3"]:
-        """Foretell decisions on end, from the command and the motion before them; `carried` makes poses of it."""
+        """Foretell decisions on end, from the command and the motion before; `carried` makes poses of it."""
         foretold = []
         for now in commands:
             motion = self.predict(now, previous, motion)

@@ -67,10 +67,10 @@ class Reaching:
     """A policy (`arena.Policy`) that goes where images were taken; `Reacher.towards` makes it.
 
     At each decision the map perceives where the body is. What is still to come of the last command is
-    foretold, and how far a body with mass coasts, and from there the body turns to the next corner of its way,
-    goes there, and at the last looks as the goal does. So it brakes in time, without a plan of its own for it.
-    Where it does not move as commanded it backs off; what is seen in unknown places is
-    bridged by what the motor model foretells.
+    foretold, and how far a body with mass coasts, and from there the body turns to the next corner of its
+    way, goes there, and at the last looks as the goal does. So it brakes in time without a plan for it.
+    Where it does not move as commanded it backs off; what is seen in unknown places is bridged by what the
+    motor model foretells.
 
     Attributes
     ----------

@@ -8,6 +8,7 @@ from cogmap.plots.acting.dreams import (
     plot_film,
     plot_surprise,
 )
+from cogmap.plots.acting.dynamics import plot_foretold, plot_stops
 from cogmap.plots.acting.journeys import plot_journeys
 from cogmap.plots.acting.reached import plot_reached
 from cogmap.plots.cells.afferents import plot_afferents
@@ -40,6 +41,8 @@ from cogmap.plots.truth.quasi_metric import plot_quasi_metric
 from cogmap.plots.truth.translation import plot_translation
 
 __all__ = [
+    "plot_stops",
+    "plot_foretold",
     "plot_afferents",
     "plot_barcode_grid",
     "plot_barcodes",
