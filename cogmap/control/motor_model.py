@@ -18,7 +18,7 @@ from cogmap.map.storage import read_state, write_state
 ROUNDS = 20
 """Of weights that count outliers less."""
 TAIL = 3.0
-"""Usual errors from which on a step counts less than half."""
+"""Usual errors from which on a step counts less than a quarter."""
 FEWEST = 40
 """Steps from which a model is learnt."""
 RANK = 1e-3
@@ -34,7 +34,7 @@ class MotorModel:
     for position x, heading θ and command u; M₁ is what comes late, and A what goes on by itself: with it, of
     second order, the model holds for bodies with mass and friction, whatever these and the gain of commands
     are; without, A is 0. All is found by least squares in which steps that a wall or a slip spoilt count
-    less (Cauchy weights), kept as sums, so that models merge and learn on. What a command does is not known
+    less (Geman–McClure weights), kept as sums, so that models merge and learn on. What a command does is not known
     before: neither which number turns and which goes, nor its sign or gain, nor whether the map is mirrored.
 
     Parameters
@@ -116,7 +116,7 @@ class MotorModel:
             cross = self._cross + (weights[:, None] * given).T @ moved
             errors = np.abs(moved - given @ _solved(gram, cross))
             usual = np.maximum(1.48 * np.median(errors, axis=0), 1e-9)
-            weights = 1 / (1 + np.square(errors / (TAIL * usual)).sum(axis=1))
+            weights = 1 / np.square(1 + np.square(errors / (TAIL * usual)).sum(axis=1))
         self._gram, self._cross, self.noise_ = gram, cross, usual
         return self
 
