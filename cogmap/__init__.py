@@ -5,9 +5,11 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cogmap import cells, evaluation, features, graph, navigation, plots, shape, testing
+    from cogmap.control import MotorModel, Reacher
     from cogmap.errors import CogmapError, UnlikeArithmeticWarning, UntrustedMapWarning
     from cogmap.evaluation.scoring import score
     from cogmap.features import BagOfWords
+    from cogmap.imagination import Imagination
     from cogmap.map.activity import Activity
     from cogmap.map.cognitive_map import CognitiveMap
     from cogmap.map.even_memory import EvenMemory
@@ -22,9 +24,12 @@ __all__ = [
     "CogmapError",
     "CognitiveMap",
     "EvenMemory",
+    "Imagination",
     "LandmarkIsomap",
     "Localiser",
+    "MotorModel",
     "Plan",
+    "Reacher",
     "UnlikeArithmeticWarning",
     "UntrustedMapWarning",
     "VisualRoadmap",
@@ -42,9 +47,11 @@ __all__ = [
 ]
 
 _HOMES = {
+    "control": ("MotorModel", "Reacher"),
     "errors": ("CogmapError", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
     "evaluation.scoring": ("score",),
     "features": ("BagOfWords",),
+    "imagination": ("Imagination",),
     "map.activity": ("Activity",),
     "map.cognitive_map": ("CognitiveMap",),
     "map.even_memory": ("EvenMemory",),

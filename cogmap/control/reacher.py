@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from cogmap.control.motor_model import MotorModel
-from cogmap.control.reaching import KNOWN, Reaching
+from cogmap.control.percept import MapPercept
+from cogmap.control.reaching import Reaching
 from cogmap.control.steering import Steering
-from cogmap.errors import CogmapError
 from cogmap.inputs import check_views
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.even_memory import EvenMemory
@@ -55,22 +55,14 @@ class Reacher:
         goal = np.asarray(goal)
         views = goal[None] if goal.ndim == 3 else goal
         check_views(views, self.cmap.view_shape_)
-        if self.cmap.relaxed_places_ is None:
-            raise CogmapError(f"this map's places are too coarse to act on: {self.cmap.refine_reason_}")
-        there = self.cmap.perceive(views)
-        novelty = np.asarray(there.novelty)
-        if novelty.max() > KNOWN:
-            raise CogmapError(
-                f"goal {novelty.argmax()} is nothing that this map remembers: what looks most like it is "
-                f"{novelty.max():.1f} times as unlike as usual; give a view from the room that was learnt"
-            )
-        return Reaching(self.cmap, self.ways, self.steering, there, single=goal.ndim == 3)
+        single = goal.ndim == 3
+        return Reaching(MapPercept(self.cmap), self.ways, self.steering, views, single=single)
 
     @cached_property
     def ways(self) -> PlaceGraph:
         """What plans ways over remembered places."""
         if self.memory is None:
-            return PlaceGraph(self.cmap.relaxed_places_.places_)
+            return PlaceGraph(MapPercept(self.cmap).relaxed.places_)
         views = self.memory.views_ if isinstance(self.memory, EvenMemory) else self.memory
         return PlaceGraph(self.cmap.perceive(views).position.astype(np.float64))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Protocol
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -11,9 +10,9 @@ from jaxtyping import Float, Int
 from arena.angles import wrap_angle
 from arena.motions.policy import Sensed
 from cogmap.control.motor_model import body_motion, carried
+from cogmap.control.percept import Percept, Views
 from cogmap.control.steering import Steering
 from cogmap.errors import CogmapError
-from cogmap.map.activity import Activity
 from cogmap.navigation.place_graph import PlaceGraph
 
 KNOWN = 4.0
@@ -56,13 +55,6 @@ REASONS = {
 }
 
 
-class Percept(Protocol):
-    """Tells where views were taken, as a `CognitiveMap` does."""
-
-    def perceive(self, views: np.ndarray) -> Activity:
-        """Give at least `position`, `phase` and `novelty`."""
-
-
 class Reaching:
     """A policy (`arena.Policy`) that goes where images were taken; `Reacher.towards` makes it.
 
@@ -79,11 +71,17 @@ class Reaching:
     """
 
     def __init__(
-        self, cmap: Percept, ways: PlaceGraph, steering: Steering, goal: Activity, *, single: bool
+        self, percept: Percept, ways: PlaceGraph, steering: Steering, goals: Views, *, single: bool = False
     ) -> None:
-        count = len(goal)
-        self._cmap, self._ways, self._steering, self._single = cmap, ways, steering, single
-        self._goal, self._goal_phase = goal.position.astype(np.float64), goal.phase.astype(np.float64)
+        count, there = len(goals), percept.perceive(goals)
+        unlike = np.asarray(there.novelty)
+        if unlike.max() > KNOWN:
+            raise CogmapError(
+                f"goal {unlike.argmax()} is nothing that this map remembers: what looks most like it is "
+                f"{unlike.max():.1f} times as unlike as usual; give a view from the room that was learnt"
+            )
+        self._percept, self._ways, self._steering, self._single = percept, ways, steering, single
+        self._goals, self._goal = goals, there.position.astype(np.float64)
         self._last, self._before = np.zeros((count, 2)), np.zeros((count, 2))
         self._position, self._phase = np.full((count, 2), np.nan), np.full(count, np.nan)
         self._motion = np.full((count, 3), np.nan)
@@ -108,7 +106,7 @@ class Reaching:
         if len(live):
             self._look(live, views[live])
             live = live[self.outcomes_[live] == Outcome.ON_THE_WAY]
-            commands[live] = self._decide(live)
+            commands[live] = self._decide(live, views[live])
             self._before[live], self._last[live] = self._last[live], commands[live]
             stopped = self.outcomes_[live] != Outcome.ON_THE_WAY
             commands[live[stopped]] = np.nan
@@ -116,9 +114,9 @@ class Reaching:
             return commands
         return None if np.isnan(commands).all() else commands[0]
 
-    def _look(self, live: Int[np.ndarray, "live"], views: np.ndarray) -> None:
+    def _look(self, live: Int[np.ndarray, "live"], views: Views) -> None:
         """Tell where these are, and whether they moved as commanded."""
-        seen = self._cmap.perceive(views)
+        seen = self._percept.perceive(views)
         position, phase = seen.position.astype(np.float64), seen.phase.astype(np.float64)
         unmoved = np.isnan(self._motion[live])
         expected = self._steering.moves(
@@ -153,7 +151,7 @@ class Reaching:
         else:
             self._ahead[explorer] = list(way[1:])
 
-    def _decide(self, live: Int[np.ndarray, "live"]) -> Float[np.ndarray, "live 2"]:
+    def _decide(self, live: Int[np.ndarray, "live"], views: Views) -> Float[np.ndarray, "live 2"]:
         steering = self._steering
         position, phase = steering.coming(
             self._position[live], self._phase[live], self._last[live], np.nan_to_num(self._motion[live])
@@ -179,7 +177,11 @@ class Reaching:
         ease = 2.0 ** (self._tries[live] / max(EASE, steering.coasting))
         docked = last & (far < steering.close * ease * np.where(self._docked[live], 2, 1))
         self._docked[live] = docked
-        turn = np.where(docked, wrap_angle(self._goal_phase[live] - phase), bearing)
+        turn = bearing
+        if docked.any():
+            here = self._percept.turns(views[docked], self._goals[live[docked]])
+            # what is still to come of the last command is not seen yet
+            turn[docked] = wrap_angle(here - wrap_angle(phase - self._phase[live])[docked])
         forward[docked] = 0
         backing = self._backing[live] > 0
         forward[backing], turn[backing] = -0.5 * steering.pace, 0

@@ -10,7 +10,7 @@ CLOSE = 0.04
 """Share of a decision's way from the goal within which it counts as reached; of its turn a sixth of that."""
 RESTS, SLOWEST = 0.01, 0.95
 """Share of its speed with which a coasting body counts as at rest; the most that is kept each decision."""
-CLEAR = 20.0
+CLEAR = 2.0
 """Times its own noise by which a motion must answer to commands."""
 
 
@@ -38,12 +38,11 @@ class Steering:
         self._motor = motor
         total = motor.total_
         along, strength, _ = np.linalg.svd(total[:2])
-        if not (
-            strength[0] > CLEAR * motor.noise_[:2].min() and np.abs(total[2]).max() > CLEAR * motor.noise_[2]
-        ):
+        turns = np.abs(total[2]).max() > CLEAR * motor.noise_[2]
+        if not (turns and strength[0] > CLEAR * motor.noise_[:2].min()):
             raise CogmapError(
-                "commands hardly move or turn this body, as far as its motor model knows; babble longer, with "
-                "both numbers of the command"
+                "commands hardly move or turn this body, as far as its motor model knows; "
+                "babble longer, with both numbers of the command"
             )
         along[:, 0] *= np.copysign(1.0, along[0, 0])  # rather where it looks than backwards
         self.course = float(np.arctan2(along[1, 0], along[0, 0]))

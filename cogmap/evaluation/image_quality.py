@@ -9,9 +9,10 @@ from jaxtyping import Float, UInt8
 from cogmap.errors import CogmapError
 
 Views = UInt8[np.ndarray, "views height width 3"]
+Others = UInt8[np.ndarray, "others rows columns 3"]
 
 
-def psnr(first: Views, second: Views) -> Float[np.ndarray, "views"]:
+def psnr(first: Views, second: Others) -> Float[np.ndarray, "views"]:
     """Peak signal-to-noise ratio of each pair of views, dB; 100 where they are equal."""
     _check(first, second)
     pairs = zip(first, second, strict=True)
@@ -19,7 +20,7 @@ def psnr(first: Views, second: Views) -> Float[np.ndarray, "views"]:
     return np.asarray(10 * np.log10(255**2 / np.maximum(errors, 255**2 / 1e10)))
 
 
-def ssim(first: Views, second: Views) -> Float[np.ndarray, "views"]:
+def ssim(first: Views, second: Others) -> Float[np.ndarray, "views"]:
     """Structural similarity of each pair of views: mean over pixels and colours, 1 where they are equal.
 
     References
@@ -45,6 +46,6 @@ def _similarity(
     return float((luminance * structure).mean())
 
 
-def _check(first: Views, second: Views) -> None:
+def _check(first: Views, second: Others) -> None:
     if first.shape != second.shape or not first.size:
         raise CogmapError(f"views of shape {first.shape} cannot be compared with {second.shape}; give pairs")

@@ -61,7 +61,7 @@ def misfit(
 ) -> Float[np.ndarray, "pairs"]:
     """Give how unlike two panoramas are once the second is turned to the first, in [0, 2].
 
-    It is Σ |difference|² / Σ (|first|² + |second|²) over all but their means, 1 for what has nothing in common.
+    It is Σ |difference|² / Σ (|first|² + |second|²) over all but their means, and 1 for nothing in common.
     """
     seconds = grey if others is None else others
     found = []

@@ -122,7 +122,7 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         return Compared(np.asarray(np.angle(told.sum(axis=1))), unlike.min(axis=1))
 
     def compare_known(self, pairs: Int[np.ndarray, "pairs 2"]) -> Compared:
-        """Give by how much the first of known views near each other is turned from the second, and the misfit."""
+        """Give by how much the first of near known views is turned from the second, and their misfit."""
         with one_thread():
             turned = turns(self._grey, pairs)
             return Compared(turned, misfit(self._grey, pairs, turned))

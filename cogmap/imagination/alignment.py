@@ -28,7 +28,11 @@ def coarse(view: Num[np.ndarray, "height width 3"]) -> Float32[np.ndarray, "pixe
 
 
 def aligned(
-    views: Float32[np.ndarray, "views pixels"], poses: Pose, fine: Painter, quick: Painter, reach: Pose
+    views: Float32[np.ndarray, "views pixels"],
+    poses: Pose,
+    fine: Painter,
+    quick: Painter,
+    reach: Float[np.ndarray, "3"],
 ) -> Pose:
     r"""Move poses until what is imagined there fits what is seen, whatever of it has changed.
 
@@ -48,7 +52,7 @@ def aligned(
     fine, quick
         Give imagined views, `coarse`; the second for their derivatives.
     reach
-        Differences of pose over which a view changes almost linearly, (1, 3).
+        Differences of pose over which a view changes almost linearly.
 
     References
     ----------
@@ -58,11 +62,11 @@ def aligned(
     left = views - fine(poses)
     for _ in range(STEPS):
         slopes = np.stack(
-            [(quick(poses + step) - quick(poses - step)) / 2 for step in reach * np.eye(3)],
+            [(quick(poses + step) - quick(poses - step)) / 2 for step in np.diag(reach)],
             axis=2,
         )
         scale = 1.4826 * np.median(np.abs(left), axis=1) + 0.5
-        moves = np.stack([_step(*one) for one in zip(left, slopes, scale, strict=True)])
+        moves = np.stack([_step(*one) for one in zip(left, slopes, scale.tolist(), strict=True)])
         tried = poses + np.clip(moves, -3, 3) * reach
         after = views - fine(tried)
         better = (_loss(after, scale) < _loss(left, scale))[:, None]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property, partial
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Literal, Protocol, get_args, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Float32, Int, UInt8
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
 from cogmap.imagination.alignment import aligned, coarse
-from cogmap.imagination.places import RememberedPlaces, Sources
+from cogmap.imagination.places import VISIT, RememberedPlaces, Sources
 from cogmap.imagination.stroll import stroll
 from cogmap.imagination.surprise import Surprise, unusual
 from cogmap.imagination.turning import Painted, blended, columns_turned
@@ -45,6 +45,7 @@ CALIBRATED = 500
 """Remembered views that tell what is usual."""
 
 
+@runtime_checkable
 class Motor(Protocol):
     """What foretells motion from commands, as a `MotorModel` does."""
 
@@ -104,7 +105,7 @@ class Imagination:
     memory: Any
     sources: int = 5
 
-    def at(self, position: ArrayLike, heading: ArrayLike, *, method: Method = "warp") -> Dream:
+    def at(self, position: ArrayLike, heading: ArrayLike | float, *, method: Method = "warp") -> Dream:
         """Imagine the views from places, (targets, 2) or (2,), in directions, (targets,) or one for all.
 
         Raises
@@ -164,6 +165,8 @@ class Imagination:
         views: Any,
         motor: Motor | None = None,
         commands: Float[np.ndarray, "views 2"] | None = None,
+        *,
+        previous: Float[np.ndarray, "views 2"] | None = None,
     ) -> Dream:
         """Expect what is seen next after each of some views.
 
@@ -174,14 +177,17 @@ class Imagination:
         motor, commands
             What foretells the motion that commands, one for each view, bring about. Without, the body is
             taken to go straight on, as far as it usually got from view to view of the remembered walk.
+        previous
+            Commands before these; they go on unchanged when None.
         """
-        position, phase = self.perceive(views)
+        poses = self._poses(views)
+        position, phase = poses[:, :2], poses[:, 2]
         if (motor is None) != (commands is None):
             raise CogmapError("give a motor model and commands for each view, or neither")
         if motor is None or commands is None:
             motion = np.broadcast_to([self.pace, 0.0, 0.0], (len(phase), 3))
         else:
-            motion = np.asarray(motor.predict(commands), np.float64)
+            motion = np.asarray(motor.predict(commands, previous), np.float64)
             check_array("predicted motion", motion, (len(phase), 3))
         # along the chord of the arc, as it was learnt
         ahead = _ahead(phase + motion[:, 2] / 2)
@@ -222,14 +228,18 @@ class Imagination:
 
     @cached_property
     def threshold(self) -> float:
-        """Above how surprising pixels are where nothing has changed: twice what 1 in 100 views reaches."""
+        """Above what surprises where nothing has changed: 2.25 times what one view in 100 reaches."""
         places = self.places
+        if len(places.phase) < 4 * VISIT:
+            raise CogmapError(
+                f"{len(places.phase)} remembered views do not tell what is usual; remember at least {4 * VISIT}"
+            )
         chosen = np.unique(np.linspace(0, len(places.phase) - 1, CALIBRATED).astype(int))
         views = np.stack([places.views[view] for view in chosen])
         poses = np.column_stack([places.position[chosen], places.phase[chosen]])
         poses = self._aligned(views, poses, chosen)
         most = [pixels.max() for pixels in self._unusual(views, poses, chosen)]
-        return float(2 * np.percentile(most, 99))
+        return float(2.25 * np.percentile(most, 99))
 
     @cached_property
     def places(self) -> RememberedPlaces:
@@ -326,7 +336,7 @@ class Imagination:
             return np.stack([coarse(each.view) for each in self.paint(sources, where[:, 2], method=method)])
 
         seen = np.stack([coarse(view) for view in views])
-        reach = np.array([[self.places.spacing, self.places.spacing, 0.01]])
+        reach = np.array([self.places.spacing, self.places.spacing, 0.01])
         return aligned(seen, poses, partial(paint, method="warp"), partial(paint, method="blend"), reach)
 
     def _unusual(

@@ -89,7 +89,7 @@ class RememberedPlaces:
         Cleveland (1979), Robust locally weighted regression: the affine weights.
         """
         candidates = min(CANDIDATES, len(self.position))
-        asked = candidates if without is None else min(2 * candidates, len(self.position))
+        asked = min(CANDIDATES + (2 * VISIT + 1) * (without is not None), len(self.position))
         # asked for as a list, also one neighbour has an axis of its own
         reach, near = (np.asarray(part) for part in self.tree.query(position, k=np.arange(1, asked + 1)))
         if without is not None:

@@ -13,8 +13,8 @@ from cogmap.imagination.turning import Painted
 
 FLOOR = 4.0
 """Difference (grey levels) that is usual anywhere."""
-SLIP = 0.08
-"""By how many pixels an edge is off, for each spacing of the memory that its target is from it."""
+SLIP = 0.03
+"""By how many pixels an edge is off, for a target as far from memory as its spacing; it grows as the square."""
 DOUBT = 8.0
 """By how much the variance of a dream is larger than that of its sources, which err alike."""
 PATCH = 11 / 360
@@ -23,10 +23,6 @@ BEYOND = 0.5
 """How far the plan reaches beyond the remembered places, in units of their extent."""
 CELLS = 120
 """Of the plan, along its longer side."""
-BLUR = 2.5 / 360
-"""Of bearings, in turns."""
-SHARED = 0.9
-"""Share of the greatest surprise from which on a cell belongs to what has changed."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +57,8 @@ class Surprise:
     def plan(self) -> Plan:
         """Pool what surprises over all views, back-projected onto the map: where something has changed.
 
-        A cell is as surprising as the alarmed views are, on average, in its direction: 1 in the middle of a
-        run of columns that surprise, less by a Gaussian of 2.5° beside it.
+        A cell is as surprising as the alarmed views are in its direction, on average: 1 where each is most
+        surprised, and else the square of the ratio to that.
 
         Raises
         ------
@@ -78,30 +74,14 @@ class Surprise:
         cell = float((high - low).max()) / CELLS
         x, y = (np.arange(start, stop, cell) + cell / 2 for start, stop in zip(low, high, strict=True))
         width = self.pixels.shape[2]
-        middles = _middles_of_runs(self.columns[alarms] > self.threshold)
+        columns = self.columns[alarms]
+        profiles = np.square(columns / columns.max(axis=1, keepdims=True))
         share = np.zeros((len(y), len(x)))
-        for position, phase, profile in zip(self.position[alarms], self.phase[alarms], middles, strict=True):
+        for position, phase, profile in zip(self.position[alarms], self.phase[alarms], profiles, strict=True):
             bearing = self.sense * (np.arctan2(y[:, None] - position[1], x - position[0]) - phase)
             # column 0 looks straight back over the left shoulder, the middle one ahead
             share += profile[np.floor((np.pi - bearing) * width / (2 * np.pi)).astype(int) % width]
         return Plan(x, y, share / len(alarms))
-
-
-def _middles_of_runs(surprised: Bool[np.ndarray, "views width"]) -> Float[np.ndarray, "views width"]:
-    """Tell how near each column is to the middle of a run of columns that surprise, around the circle."""
-    width = surprised.shape[1]
-    columns = np.arange(width)
-    profiles = np.zeros(surprised.shape)
-    for hits, profile in zip(surprised, profiles, strict=True):
-        starts = np.flatnonzero(hits & ~np.roll(hits, 1))
-        ends = np.flatnonzero(hits & ~np.roll(hits, -1))
-        # a run that goes on over the left shoulder begins last and ends first
-        ends = np.roll(ends, -1) if len(ends) and ends[0] < starts[0] else ends
-        for start, end in zip(starts, ends, strict=True):
-            middle = start + ((end - start) % width) / 2
-            off = (columns - middle + width / 2) % width - width / 2
-            np.maximum(profile, np.exp(-0.5 * np.square(off / (BLUR * width))), out=profile)
-    return profiles
 
 
 @dataclass(frozen=True)
@@ -112,15 +92,13 @@ class Plan:
     y: Float[np.ndarray, "rows"]
     """Middles of the cells, in the unit of the map."""
     share: Float[np.ndarray, "rows columns"]
-    """By how many of the alarmed views, from 0 to 1."""
+    """How much the alarmed views are surprised in its direction, from 0 to 1."""
 
     @property
     def changed(self) -> Float[np.ndarray, "2"]:
-        """Where something has changed: the middle of the piece around the most surprising cell."""
-        likely = (self.share >= SHARED * self.share.max()).astype(np.uint8)
-        pieces = cv2.connectedComponents(likely)[1]
-        rows, columns = np.nonzero(pieces == pieces[np.unravel_index(self.share.argmax(), self.share.shape)])
-        return np.array([self.x[columns].mean(), self.y[rows].mean()])
+        """Where something has changed: the most surprising cell."""
+        row, column = np.unravel_index(self.share.argmax(), self.share.shape)
+        return np.array([self.x[column], self.y[row]])
 
 
 def unusual(
@@ -129,7 +107,7 @@ def unusual(
     r"""Compare a view with what was imagined, pixel by pixel.
 
     .. math:: \sqrt{\overline{(v - D)^2} \big/ \overline{\sigma^2}},\quad
-        \sigma^2 = \sigma_0^2 + 8 s^2 + (\epsilon d\,|\nabla D|)^2,
+        \sigma^2 = \sigma_0^2 + 8 s^2 + (\epsilon d^2\,|\nabla D|)^2,
 
     means over a patch; s is the spread of the sources, and edges are the less certain the farther, d, the
     nearest remembered place is, in units of the memory's spacing.
@@ -139,7 +117,7 @@ def unusual(
     across = (np.roll(imagined, -1, axis=1) - np.roll(imagined, 1, axis=1)) / 2
     down = np.gradient(imagined, axis=0)
     edges = (np.square(across) + np.square(down)).mean(axis=2)
-    variance = FLOOR**2 + DOUBT * np.square(painted.spread) + (SLIP * distance) ** 2 * edges
+    variance = FLOOR**2 + DOUBT * np.square(painted.spread) + (SLIP * distance**2) ** 2 * edges
     return np.asarray(np.sqrt(_patches(error) / _patches(variance)), np.float32)
 
 

@@ -261,8 +261,10 @@ class CognitiveMap:
                 self._look(network.recall(strip, None if logs is None else logs[rows]))
                 for rows, strip in self._strips(views)
             ]
-        columns = [torch.cat(part).cpu().numpy() for part in zip(*parts, strict=True)]
-        plain = Activity(*columns)
+        place, heading, phase, odour, position = (
+            torch.cat(part).cpu().numpy() for part in zip(*parts, strict=True)
+        )
+        plain = Activity(place, heading, phase, odour, position)
         if self.relaxed_places_ is None:
             return plain
         there = self.relaxed_places_.locate(views, plain.position)
@@ -270,7 +272,7 @@ class CognitiveMap:
         return replace(plain, **finer, plain=plain)
 
     def refine(self, views: Any) -> CognitiveMap:
-        """Relax places and headings of remembered panoramas, so that what is perceived is fine enough to act on.
+        """Relax places and headings of panoramas, so that what is perceived is fine enough to act on.
 
         Best the views that were learnt, in the order of the walk. From then on `perceive` gives positions and
         phases by `cogmap.map.relaxed_places.RelaxedPlaces`, and beside them those of the charts alone

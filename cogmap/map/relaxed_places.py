@@ -11,6 +11,7 @@ from jaxtyping import Float, Int
 
 from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
+from cogmap.features.compass import turns
 from cogmap.features.panorama import PanoramaCode
 from cogmap.features.strips import strips
 from cogmap.graph.affine_weights import affine_weights
@@ -146,6 +147,12 @@ class RelaxedPlaces:
         phase = wrap_angle(-heading if self.mirrored_ else heading)
         unusual = np.sqrt(unlike / self._usual.misfit)
         return Located(position, phase, np.maximum(near.distances[:, -1] / self._usual.apart, unusual))
+
+    def turns(self, views: Any, others: Any) -> Float[np.ndarray, "views"]:
+        """Tell by how much (rad, as phase) to turn from each view to look as another from there does."""
+        pairs = np.repeat(np.arange(len(views))[:, None], 2, axis=1)
+        turned = turns(strips(others).grey, pairs, strips(views).grey)
+        return -turned if self.mirrored_ else turned
 
     def nearest(self, views: Any) -> Int[np.ndarray, "views"]:
         """Tell which remembered view looks most like each of these from any heading."""

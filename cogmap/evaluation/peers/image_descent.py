@@ -54,7 +54,7 @@ def rotational_difference(
 
 
 class ImageDescent:
-    """A policy that goes on while what it sees grows more like the goal's image, and else turns and tries anew.
+    """A policy that goes on while what it sees grows more like the goal's image, else turns and tries anew.
 
     Steps shrink by a third after each that led uphill. At the end it turns to look as the goal does. It knows
     its camera (a turn shifts columns) and what its commands do, and has no memory but of the last image.

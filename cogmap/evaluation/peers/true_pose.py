@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float, UInt8
 
 from arena import Arena
+from arena.angles import wrap_angle
 from cogmap.map.activity import Activity
 
 PIXELS = 8
@@ -42,3 +43,9 @@ class TruePercept:
         poses = np.ascontiguousarray(views).reshape(len(views), -1).view(np.float64)
         nothing = np.empty((len(views), 0))
         return Activity(nothing, nothing, poses[:, 2], nothing, poses[:, :2], novelty=np.zeros(len(views)))
+
+    def turns(
+        self, views: UInt8[np.ndarray, "views 1 8 3"], others: UInt8[np.ndarray, "views 1 8 3"]
+    ) -> Float[np.ndarray, "views"]:
+        """Subtract headings."""
+        return wrap_angle(self.perceive(others).phase - self.perceive(views).phase)

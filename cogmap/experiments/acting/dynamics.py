@@ -15,7 +15,7 @@ from arena.motions.locomotion import free_space
 from arena.motions.policy import Policy, Sensed
 from cogmap.control import MotorModel, Reaching
 from cogmap.control.motor_model import body_motion, carried
-from cogmap.control.reaching import Percept
+from cogmap.control.percept import MapPercept, Percept
 from cogmap.control.steering import Steering
 from cogmap.errors import CogmapError
 from cogmap.evaluation.image_quality import psnr
@@ -35,8 +35,8 @@ LONGEST = 60.0
 """Time after which a journey is ended, s."""
 FULL_SPEED = 3
 """Time constants of the run-up: it begins to stop at 95 % of its speed."""
-STOPPED = 0.03
-"""How near (m) the goal it must stand still."""
+STOPPED, SLOW = 0.03, 0.02
+"""How near (m) the goal it must be, and slower than what (m/s)."""
 
 
 class _RunUp:
@@ -88,6 +88,7 @@ def dynamics(conditions: Conditions) -> Result:
     cmap.refine(walk.views)
     if cmap.relaxed_places_ is None:
         raise CogmapError(f"nothing reaches anything with this map: {cmap.refine_reason_}; explore more")
+    sight = MapPercept(cmap)
     dream = Imagination(cmap, memory=walk.views)
     truth, places = TruePercept(), walk.require("poses")[:, :2]
     ways = {"": PlaceGraph(cmap.relaxed_places_.places_), "true_": PlaceGraph(places)}
@@ -100,17 +101,17 @@ def dynamics(conditions: Conditions) -> Result:
         starts = _starts(room, body, rng)
         goals = draw_poses(room, body.radius, len(starts), rng)
         spell = _babble(room, camera, body, seed)
-        second, first = (_learnt(spell, cmap, order) for order in (2, 1))
+        second, first = (_learnt(spell, sight, order) for order in (2, 1))
         # let it try, though it knows how badly it fits
         first.noise_ = np.zeros(3)
         models: dict[str, tuple[MotorModel, Percept, Any]] = {
-            "": (second, cmap, camera),
-            "first_order_": (first, cmap, camera),
+            "": (second, sight, camera),
+            "first_order_": (first, sight, camera),
             "true_": (_learnt(_babble(room, PoseEye(), body, seed), truth, 2), truth, PoseEye()),
         }
         for name, (motor, percept, eye) in models.items():
-            goal = percept.perceive(eye.render(room, goals, rng=rng))
-            go = Reaching(percept, ways.get(name, ways[""]), Steering(motor), goal, single=False)
+            images = eye.render(room, goals, rng=rng)
+            go = Reaching(percept, ways.get(name, ways[""]), Steering(motor), images)
             stops[name].append(_stop(room, go, eye, starts, goals, body, seed))
         foretold.append(_foretell(room, camera, dream, {"": second, "first_order_": first}, stops[""][-1]))
     tables = {
@@ -224,9 +225,9 @@ def _stop(
     )
     table = scored(room, gone, goals, body)
     table["seconds"] -= run_up * DT
-    # at rest: not a centimetre a second when it says that it has arrived
+    # at rest, when it says that it has arrived: slower than 2 cm/s
     last = np.stack([gone.poses[step - 1 : step + 1, k, :2] for k, step in enumerate(gone.steps)])
-    slow = np.linalg.norm(last[:, 1] - last[:, 0], axis=1) < 0.01 * DT
+    slow = np.linalg.norm(last[:, 1] - last[:, 0], axis=1) < SLOW * DT
     table["stopped"] = slow & (gone.steps < most)
     return _Stops(body, gone, goals, run_up, table)
 

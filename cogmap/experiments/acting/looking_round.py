@@ -36,9 +36,9 @@ def looking_round(conditions: Conditions, *, queries: int = 500) -> Result:
     """Turn the head where a view may have been taken at either of two places, until one hypothesis stands.
 
     An eye of 90 degrees sees no more than a part of a white room, of which one wall may be blue. The animal
-    remembers views and smells of a walk; then it is put somewhere and looks, without smelling. It is right when
-    the view that it takes this for was taken nearer to where it is than to the opposite pose: before turning,
-    and after turns of 6 degrees, up to 30 to either side, whether it says that it knows (`resolved`) or not.
+    remembers views and smells of a walk; then it is put somewhere and looks, without smelling. It is right
+    when the view that it takes this for was taken nearer to where it is than to the opposite pose: before
+    turning, and after turns of 6 degrees, up to 30 to either side, whether it says that it knows (`resolved`) or not.
     In the white room nothing could tell, and it must not say that it knows.
     """
     looked = {name: _look(conditions, Arena.load(room), queries) for name, room in ROOMS.items()}

@@ -10,7 +10,10 @@ import pandas as pd
 from jaxtyping import Float, UInt8
 
 from arena import Brownian, Camera, Disc, Recording
+from arena.angles import wrap_angle
+from arena.eye.base import Eye
 from cogmap.control import Outcome, Reacher, Reaching
+from cogmap.control.percept import Percept, Views
 from cogmap.control.steering import Steering
 from cogmap.errors import CogmapError
 from cogmap.evaluation.peers.image_descent import ImageDescent, catchment, rotational_difference
@@ -52,14 +55,17 @@ class _PlainPercept(NamedTuple):
 
     cmap: CognitiveMap
 
-    def perceive(self, views: np.ndarray) -> Activity:
+    def perceive(self, views: Views) -> Activity:
         seen = self.cmap.perceive(views)
         return replace(seen if seen.plain is None else seen.plain, novelty=seen.novelty)
+
+    def turns(self, views: Views, others: Views) -> Float[np.ndarray, "views"]:
+        return wrap_angle(self.perceive(others).phase - self.perceive(views).phase)
 
 
 @experiment(room="pillar", views=17_000, takes=("map",))
 def reaching(conditions: Conditions) -> Result:
-    """Reach the pose of a goal image through the physics, by a motor model from babbling, and by what peers do.
+    """Reach the pose of an image through the physics, by what babbling taught of commands, beside peers.
 
     A map is learnt and its places are relaxed from one walk; the body babbles 400 decisions of 0.2 s, from
     which it learns what commands do; then 200 explorers are shown an image each, and go where it was taken,
@@ -83,14 +89,14 @@ def reaching(conditions: Conditions) -> Result:
     motor = babble(room, camera, cmap, body, conditions.seed)
     reacher = Reacher(cmap, motor)
     go = reacher.towards(images)
-    gone = travel(room, go, camera, starts, body, conditions.seed)
+    gone = travel(room, go, camera, starts, body=body, seed=conditions.seed)
     tables = {"": scored(room, gone, goals, body).assign(outcome=_names(go))}
     for name, (other, noise) in DISTURBANCES.items():
         eye = noisy(camera, noise)
         learnt = babble(room, eye, cmap, other, conditions.seed)
         seen = eye.render(room, few[1], rng=rng)
         steers = Reacher(cmap, learnt).towards(seen)
-        late = travel(room, steers, eye, few[0], other, conditions.seed)
+        late = travel(room, steers, eye, few[0], body=other, seed=conditions.seed)
         tables[f"{name}_"] = scored(room, late, few[1], other).assign(outcome=_names(steers))
     tables |= _peers(conditions, cmap, walk, few, camera)
     metrics = {
@@ -125,7 +131,7 @@ def reaching(conditions: Conditions) -> Result:
         captions={
             "journeys": "Journeys to the poses of images, and what is seen on the way of one",
             "reached": "How far from the goal each journey ended, under disturbances and beside peers",
-            "catchment": "From where descent on image differences reaches a goal, and from where this policy does",
+            "catchment": "From where descent on image differences reaches a goal, and from where the policy",
         },
     )
 
@@ -137,21 +143,19 @@ def _peers(
     room, body, (starts, goals) = conditions.room, Disc(), ends
     truth, eye = TruePercept(), PoseEye()
     rng = np.random.default_rng(conditions.seed)
-    sees = {
-        "true_": (truth, eye, walk.require("poses")[:, :2]),
-        "plain_": (_PlainPercept(cmap), camera, None),
-    }
+    plain = _PlainPercept(cmap)
+    known = {"true_": walk.require("poses")[:, :2], "plain_": plain.perceive(walk.views).position}
+    sees: dict[str, tuple[Percept, Eye]] = {"true_": (truth, eye), "plain_": (plain, camera)}
     tables = {}
-    for name, (percept, looks, known) in sees.items():
+    for name, (percept, looks) in sees.items():
         motor = babble(room, looks, percept, body, conditions.seed)
-        places = percept.perceive(walk.views).position if known is None else known
-        goal = percept.perceive(looks.render(room, goals, rng=rng))
-        go = Reaching(percept, PlaceGraph(places.astype(np.float64)), Steering(motor), goal, single=False)
-        gone = travel(room, go, looks, starts, body, conditions.seed)
+        images = looks.render(room, goals, rng=rng)
+        go = Reaching(percept, PlaceGraph(known[name].astype(np.float64)), Steering(motor), images)
+        gone = travel(room, go, looks, starts, body=body, seed=conditions.seed)
         tables[name] = scored(room, gone, goals, body).assign(outcome=_names(go))
     steering = Steering(babble(room, eye, truth, body, conditions.seed))
     descent = ImageDescent(camera.render(room, goals), steering)
-    gone = travel(room, descent, camera, starts, body, conditions.seed)
+    gone = travel(room, descent, camera, starts, body=body, seed=conditions.seed)
     return tables | {"descent_": scored(room, gone, goals, body)}
 
 
@@ -175,7 +179,7 @@ def _catchments(
         difference[free] = rotational_difference(seen, np.broadcast_to(image, seen.shape)).rms
         column, row = np.floor((goal[:2] - [x0, y0]) / GRID).astype(int)
         go = reacher.towards(np.broadcast_to(image, seen.shape))
-        gone = travel(room, go, camera, starts, body, conditions.seed)
+        gone = travel(room, go, camera, starts, body=body, seed=conditions.seed)
         ended[free] = np.linalg.norm(gone.poses[-1, :, :2] - goal[:2], axis=1)
         fields.append(Field(goal, (x0, y0), GRID, difference, catchment(difference, (row, column)), ended))
     shares = {

@@ -8,12 +8,13 @@ from jaxtyping import Float
 
 from arena import Arena, Babble, Camera, Disc, explore
 from arena.acting import Journeys, journeys
-from arena.exploration import Eye
+from arena.eye.base import Eye
 from arena.motions.policy import Policy
 from cogmap.control import MotorModel
-from cogmap.control.reaching import Percept
+from cogmap.control.percept import Percept
 from cogmap.evaluation.shortest import shortest_lengths
 from cogmap.experiments.poses import pose_columns, pose_errors
+from cogmap.map.cognitive_map import CognitiveMap
 
 BABBLED = 400
 """Decisions of motor babbling."""
@@ -25,7 +26,7 @@ BABBLING_SEED, JOURNEY_SEED = 2000, 3000
 """Added to the seed."""
 
 
-def babble(room: Arena, eye: Eye, percept: Percept, body: Disc, seed: int) -> MotorModel:
+def babble(room: Arena, eye: Eye, percept: Percept | CognitiveMap, body: Disc, seed: int) -> MotorModel:
     """Learn what commands do, from what is perceived while they are given at random."""
     spell = explore(room, Babble(), eye, body=body, views=BABBLED, seed=seed + BABBLING_SEED)
     seen = percept.perceive(np.asarray(spell.views))
@@ -39,7 +40,7 @@ def draw_poses(room: Arena, radius: float, count: int, rng: np.random.Generator)
 
 
 def travel(
-    room: Arena, policy: Policy, eye: Eye, starts: Float[np.ndarray, "pairs 3"], body: Disc, seed: int
+    room: Arena, policy: Policy, eye: Eye, starts: Float[np.ndarray, "pairs 3"], *, body: Disc, seed: int
 ) -> Journeys:
     """Let explorers go by a policy until they stop, all at once."""
     return journeys(room, policy, eye, starts, body=body, most_steps=MOST_STEPS, seed=seed + JOURNEY_SEED)

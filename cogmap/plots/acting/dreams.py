@@ -230,7 +230,7 @@ def _show(axes: Axes, image: UInt8[np.ndarray, "height width 3"]) -> None:
     axes.spines[:].set_visible(False)
 
 
-def _check_pairs(first: Views, second: Views) -> None:
+def _check_pairs(first: Views, second: UInt8[np.ndarray, "others rows columns 3"]) -> None:
     if first.shape != second.shape or not len(first):
         raise CogmapError(
             f"views of shape {first.shape} and {second.shape} are no pairs; give as many of both"

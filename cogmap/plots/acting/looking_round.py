@@ -27,15 +27,15 @@ def plot_looking_round(
         By name of the room: `x_m`, `y_m`, `heading_rad`, `right_before`, `right_after` and `resolved` of each
         query; the first look of one, what it is taken for, its last look, and what that is taken for.
     """
-    figure = new_figure(12.0, 4.6 * len(looked))
+    figure = new_figure(12.0, 3.5 * len(looked))
     for (name, (table, views)), part in zip(
         looked.items(), figure.subfigures(len(looked), 1, squeeze=False).flat, strict=True
     ):
         part.suptitle(name.replace("_", " "), fontsize=SMALL + 1)
-        plans, strip = part.subfigures(2, 1, height_ratios=[2.2, 1])
+        plans, strip = part.subfigures(1, 2, width_ratios=[2.2, 1])
         for axes, when in zip(plans.subplots(1, 2), ("before", "after"), strict=True):
             _draw(axes, table, when)
-        for axes, view, title in zip(strip.subplots(1, len(TITLES)), views, TITLES, strict=True):
+        for axes, view, title in zip(strip.subplots(2, 2).flat, views, TITLES, strict=True):
             tidy(axes, title=title, size=SMALL - 1)
             axes.imshow(view, interpolation="nearest")
             axes.set_axis_off()
