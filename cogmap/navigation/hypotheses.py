@@ -16,7 +16,7 @@ from cogmap.threads import one_thread
 
 COMPONENTS = 60
 """Of the codes."""
-NEAREST = 60
+NEAREST = 250
 """Remembered views, by looks, that hypotheses are made of."""
 ALIKE = 2.0
 """How many times farther than the nearest, or than is usual, these may be."""
@@ -45,7 +45,7 @@ class SceneMemory:
     Raises
     ------
     CogmapError
-        At first use: for arrays that are not finite or do not fit, and fewer than 60 views.
+        At first use: for arrays that are not finite or do not fit, and fewer than 250 views.
     """
 
     codes: Float[np.ndarray, "views features"]
