@@ -18,6 +18,7 @@ _COMMANDS = {
     "explore": "rooms:_explore",
     "export": "maps:_export",
     "learn": "maps:_learn",
+    "reach": "acting:_reach",
     "report": "results:_page",
     "score": "maps:_score",
     "sweep": "results:_sweep",

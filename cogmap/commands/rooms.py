@@ -1,9 +1,12 @@
 """Commands about rooms and the ways through them."""
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Literal
 
+import cv2
+import numpy as np
 from cyclopts import Parameter
 
 from arena import Arena, Camera, Disc, Nose, explore, gallery
@@ -23,13 +26,17 @@ def _arena(
     *,
     out: Path | None = None,
     sheet: Path | None = None,
+    view: Path | None = None,
+    pose: tuple[float, float, float] | None = None,
+    width: int = 360,
+    height: int = 60,
     schema: Annotated[bool, Parameter(negative="")] = False,
     as_json: Json = False,
 ) -> None:
     """Show a room: what is in it, a picture of it from above, and how it looks from inside.
 
     Examples: `cogmap arena pillar --out pillar.png --sheet views.png`; `cogmap arena my_room.toml --json`;
-    `cogmap arena --schema > arena.schema.json`.
+    `cogmap arena pillar --pose 1.2 -0.8 90 --view goal.png`; `cogmap arena --schema > arena.schema.json`.
 
     Parameters
     ----------
@@ -39,6 +46,12 @@ def _arena(
         PNG to write the picture from above to; it must not exist.
     sheet
         PNG to write perspective and panoramic views to; it must not exist.
+    view
+        PNG to write what is seen all around from `pose` to; it must not exist.
+    pose
+        x, y (m) and heading (°) from which `view` is taken.
+    width, height
+        Of the view, pixels.
     schema
         Print the JSON Schema of the TOML files instead.
     """
@@ -54,13 +67,26 @@ def _arena(
         "odour_sources": len(room.sources),
         "free_area_m2": float(room.free_space(Disc().radius).area),
     }
-    for path, plot in ((out, plot_room), (sheet, plot_sheet)):
+    if (view is None) != (pose is None):
+        raise CogmapError("a view needs a place: give --view and --pose together")
+
+    def take(file: Path) -> None:
+        x, y, degrees = pose or (0.0, 0.0, 0.0)
+        seen = Camera.panoramic(width, height).render(room, np.array([[x, y, np.deg2rad(degrees)]]))[0]
+        file.write_bytes(cv2.imencode(".png", cv2.cvtColor(seen, cv2.COLOR_RGB2BGR))[1].tobytes())
+
+    writers: tuple[tuple[Path | None, Callable[[Path], None]], ...] = (
+        (out, lambda file: plot_room(room).savefig(file, format="png")),
+        (sheet, lambda file: plot_sheet(room).savefig(file, format="png")),
+        (view, take),
+    )
+    for path, write in writers:
         if path is not None:
             check_absent(path, CogmapError)
             if not path.parent.is_dir():  # a mistyped folder is not made
                 raise CogmapError(f"cannot write {path}: No such file or directory")
             with atomic_write(path) as fresh:
-                plot(room).savefig(fresh, format="png")
+                write(fresh)
     tell(described, as_json=as_json)
 
 

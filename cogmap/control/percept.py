@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -17,6 +17,7 @@ Views = Any
 """Images (views, height, width, 3) uint8, or what slices to such."""
 
 
+@runtime_checkable
 class Percept(Protocol):
     """Tells where views were taken."""
 

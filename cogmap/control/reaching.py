@@ -13,6 +13,7 @@ from cogmap.control.motor_model import body_motion, carried
 from cogmap.control.percept import Percept, Views
 from cogmap.control.steering import Steering
 from cogmap.errors import CogmapError
+from cogmap.map.activity import Activity
 from cogmap.navigation.place_graph import PlaceGraph
 
 KNOWN = 4.0
@@ -55,6 +56,22 @@ REASONS = {
 }
 
 
+def check_known(seen: Activity) -> None:
+    """Refuse views of nowhere that is remembered.
+
+    Raises
+    ------
+    CogmapError
+        Which of them looks least like anything, and how unlike it is.
+    """
+    novelty = np.asarray(seen.novelty)
+    if novelty.max() > KNOWN:
+        raise CogmapError(
+            f"goal {novelty.argmax()} is nothing that this map remembers: what looks most like it is "
+            f"{novelty.max():.1f} times as unlike as usual; give a view from the room that was learnt"
+        )
+
+
 class Reaching:
     """A policy (`arena.Policy`) that goes where images were taken; `Reacher.towards` makes it.
 
@@ -74,12 +91,7 @@ class Reaching:
         self, percept: Percept, ways: PlaceGraph, steering: Steering, goals: Views, *, single: bool = False
     ) -> None:
         count, there = len(goals), percept.perceive(goals)
-        unlike = np.asarray(there.novelty)
-        if unlike.max() > KNOWN:
-            raise CogmapError(
-                f"goal {unlike.argmax()} is nothing that this map remembers: what looks most like it is "
-                f"{unlike.max():.1f} times as unlike as usual; give a view from the room that was learnt"
-            )
+        check_known(there)
         self._percept, self._ways, self._steering, self._single = percept, ways, steering, single
         self._goals, self._goal = goals, there.position.astype(np.float64)
         self._last, self._before = np.zeros((count, 2)), np.zeros((count, 2))
@@ -106,6 +118,7 @@ class Reaching:
         if len(live):
             self._look(live, views[live])
             live = live[self.outcomes_[live] == Outcome.ON_THE_WAY]
+        if len(live):  # not all of them got lost or stuck
             commands[live] = self._decide(live, views[live])
             self._before[live], self._last[live] = self._last[live], commands[live]
             stopped = self.outcomes_[live] != Outcome.ON_THE_WAY
@@ -140,7 +153,7 @@ class Reaching:
         self._position[live], self._phase[live] = position, phase
         self.outcomes_[live[self._unknown[live] >= PATIENCE]] = Outcome.LOST
         self.outcomes_[live[self._held[live] >= PATIENCE]] = Outcome.STUCK
-        for explorer in live[~began]:
+        for explorer in live[~began].tolist():
             self._plan(explorer)
 
     def _plan(self, explorer: int) -> None:
@@ -161,7 +174,7 @@ class Reaching:
             np.abs(wrap_angle(phase - self._phase[live])) < steering.facing
         )
         target = np.array(
-            [self._corner(explorer, here) for explorer, here in zip(live, position, strict=True)]
+            [self._corner(explorer, here) for explorer, here in zip(live.tolist(), position, strict=True)]
         )
         last = np.array([len(self._ahead[explorer]) == 1 for explorer in live])
         step = target - position

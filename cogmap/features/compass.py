@@ -23,10 +23,12 @@ _f = np.arange(FREQUENCIES, dtype=np.float32)
 
 Series = Complex64[np.ndarray, "views rows frequencies"]
 """Fourier series of the brightness of panoramas, `strips(views).grey`."""
+Others = Complex64[np.ndarray, "others rows frequencies"]
+"""The same of other panoramas."""
 
 
 def turns(
-    grey: Series, pairs: Int[np.ndarray, "pairs 2"], others: Series | None = None
+    grey: Series, pairs: Int[np.ndarray, "pairs 2"], others: Others | None = None
 ) -> Float[np.ndarray, "pairs"]:
     r"""Give the heading of the first view of each pair minus that of the second, rad.
 
@@ -57,7 +59,7 @@ def misfit(
     grey: Series,
     pairs: Int[np.ndarray, "pairs 2"],
     turned: Float[np.ndarray, "pairs"],
-    others: Series | None = None,
+    others: Others | None = None,
 ) -> Float[np.ndarray, "pairs"]:
     """Give how unlike two panoramas are once the second is turned to the first, in [0, 2].
 

@@ -87,7 +87,9 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
             found = axes.transform(seen.turn_invariant).astype(np.float64)
             scale = 1 / np.sqrt(found.var(axis=0).sum())
             self.places_ = scale * found
-            self._mean, self._axes, self._scale, self._grey = axes.mean_, axes.components_, scale, seen.grey
+            # in the order in which they are stored: products round otherwise in another
+            self._axes = np.ascontiguousarray(axes.components_)
+            self._mean, self._scale, self._grey = axes.mean_, scale, seen.grey
             graph = neighbour_graph(self.places_, neighbours)
             edges = np.column_stack(sp.triu(graph, 1).nonzero())
             self.headings_ = synchronise_headings(graph, edges, turns(seen.grey, edges))

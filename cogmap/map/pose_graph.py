@@ -153,7 +153,8 @@ def _round(
         few = cho_solve(factor, (wide.T @ slope).T.ravel()).reshape(3, -1).T
         return np.asarray((slope / scale + wide @ few).ravel())
 
-    system, inverse = (LinearOperator((3 * views, 3 * views), matvec=each) for each in (normal, precondition))
+    shape = (3 * views, 3 * views)
+    system, inverse = (LinearOperator(shape, matvec=each, dtype=float) for each in (normal, precondition))
     found = cg(system, downhill, rtol=1e-4, maxiter=MOST_ITERATIONS, M=inverse)[0]
     right, up, turned = found.reshape(views, 3).T
     return places + length * (right + 1j * up), added + turned

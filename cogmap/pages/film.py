@@ -15,9 +15,7 @@ from cogmap.errors import CogmapError
 def check_film(out: Path) -> None:
     """Raise unless a film can be written there: a path that is new and ends in .mp4, or a folder."""
     if out.suffix not in {".mp4", ""}:
-        raise CogmapError(
-            f"a film is not written as {out.suffix}; let it end in .mp4, or give a folder"
-        )
+        raise CogmapError(f"a film is not written as {out.suffix}; let it end in .mp4, or give a folder")
     if out.exists() or out.is_symlink():
         raise CogmapError(
             f"{out} exists already and is left as it is; choose another path or remove it first"

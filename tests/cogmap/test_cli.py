@@ -1,14 +1,19 @@
 import json
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
+import pandas as pd
 import pytest
 
-from arena import Arena, Recording
+from arena import Arena, Camera, Recording
 from cogmap import CognitiveMap, cli
+from cogmap.commands import acting
 from cogmap.experiments.registry import experiments
+from tests.cogmap.conftest import Refined
 
 FURNISHED = Arena.load("furnished").to_toml()
 
@@ -238,6 +243,70 @@ def test_an_experiment_leaves_its_metrics(run, tmp_path: Path) -> None:
     refused(run("report", tmp_path), "is not the result of")
 
 
+@pytest.fixture(scope="module")
+def settled(refined: Refined, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A refined map, its walk and a motor model."""
+    place = tmp_path_factory.mktemp("settled")
+    refined.walk.save(place / "walk.zarr")
+    replace(refined.walk[:70], attributes={}).save(place / "anywhere.zarr")
+    refined.cmap.save(place / "map")
+    refined.motor.save(place / "motor")
+    return place
+
+
+def test_reach_goes_where_an_image_was_taken(run, settled: Path, tmp_path: Path) -> None:
+    goal, size = tmp_path / "goal.png", ["--width", 90, "--height", 15]
+    assert run("arena", "open_field", "--pose", -0.9, 0.4, 120, "--view", goal, *size)[0] == 0
+    room, pose = Arena.load("open_field"), np.array([[-0.9, 0.4, np.deg2rad(120)]])
+    seen = Camera.panoramic(90, 15).render(room, pose)[0]
+    np.testing.assert_array_equal(cv2.imread(str(goal))[:, :, ::-1], seen)
+    there = [settled / "map", settled / "walk.zarr", "--goal", goal]
+    out = tmp_path / "reached"
+    status, said, err = run("reach", *there, "--start", 0.8, -0.6, -90, "--out", out, "--json")
+    assert status == 0, err
+    found = json.loads(said)
+    assert found == json.loads((out / "metrics.json").read_text(encoding="utf-8"))
+    assert (found["outcome"], found["reason"], found["touched"]) == ("arrived", "", False)
+    way = pd.read_parquet(out / "journey.parquet")
+    np.testing.assert_allclose(way.iloc[0, 1:4], [0.8, -0.6, -np.pi / 2])
+    np.testing.assert_allclose(way.iloc[-1, 1:4], pose[0], atol=0.03)
+    assert found["seconds"] == way["time_s"].iloc[-1]
+    assert way[["first_command", "second_command"]].abs().max().max() <= 1
+    assert np.hypot(1.7, 1.0) - 0.03 < found["way_m"] < 2.2
+    assert (out / "journey.png").read_bytes().startswith(b"\x89PNG")
+    status, said, _ = run("reach", *there, "--motor", out / "motor", "--seed", 3, "--out", tmp_path / "again")
+    assert status == 0
+    assert "arrived" in said
+    assert not (tmp_path / "again" / "motor").exists()
+
+
+def test_reach_refuses_bad_goals_before_anything_moves(
+    run, settled: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def moved(*_: object, **__: object) -> None:
+        pytest.fail("something moved")
+
+    monkeypatch.setattr(acting, "babble", moved)
+    monkeypatch.setattr(acting, "travel", moved)
+    for name, size in (("black", (15, 90, 3)), ("large", (60, 360, 3))):
+        cv2.imwrite(str(tmp_path / f"{name}.png"), np.zeros(size, np.uint8))
+    (tmp_path / "text.png").write_text("no image", encoding="utf-8")
+    known, out = (settled / "map", settled / "walk.zarr"), tmp_path / "out"
+    for goal, words in (
+        ("black", ["nothing that this map remembers"]),
+        ("large", ["60×360", "15×90"]),
+        ("text", ["no image"]),
+        ("none", ["no image"]),
+    ):
+        refused(run("reach", *known, "--goal", tmp_path / f"{goal}.png", "--out", out), *words)
+    black = ["--goal", tmp_path / "black.png", "--out", out]
+    refused(run("reach", settled / "map", settled / "anywhere.zarr", *black), "which room")
+    refused(run("reach", *known, *black, "--start", 9, 9, 0), "start")
+    refused(run("reach", *known, *black, "--motor", settled / "map"), "motor")
+    assert not out.exists()
+    refused(run("arena", "pillar", "--view", out), "--pose")
+
+
 def test_export_writes_nwb(run, folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "walk.nwb"
     status, said, err = run("export", folder / "walk.zarr", folder / "map", "--out", out, "--json")
@@ -250,7 +319,7 @@ def test_export_writes_nwb(run, folder: Path, tmp_path: Path) -> None:
 def test_help_gives_examples(run) -> None:
     said = run("experiment", "--help")[1]
     assert all(name in said for name in experiments())
-    for command in ("demo", "experiment", "arena", "explore", "learn", "score", "report", "export"):
+    for command in ("demo", "experiment", "arena", "explore", "learn", "score", "report", "export", "reach"):
         status, out, _ = run(command, "--help")
         assert status == 0
         assert f"cogmap {command} " in " ".join(out.split())

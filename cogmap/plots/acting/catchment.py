@@ -64,9 +64,7 @@ def plot_catchment(arena: Arena, fields: Sequence[Field]) -> Figure:
     return figure
 
 
-def _draw(
-    axes: Axes, arena: Arena, field: Field, values: Float[np.ndarray, "y x"], most: float
-) -> AxesImage:
+def _draw(axes: Axes, arena: Arena, field: Field, values: Float[np.ndarray, "y x"], most: float) -> AxesImage:
     tidy_room(axes)
     draw_surfaces(axes, arena)
     for text in axes.texts:

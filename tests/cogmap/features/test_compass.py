@@ -4,7 +4,7 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import minimum_spanning_tree
 
 from cogmap.features import compass
-from cogmap.features.compass import synchronise_headings, turns
+from cogmap.features.compass import misfit, synchronise_headings, turns
 from cogmap.features.strips import strips
 from cogmap.graph.neighbour_graph import neighbour_graph
 
@@ -34,8 +34,10 @@ def test_blocks_of_pairs_change_nothing(monkeypatch: pytest.MonkeyPatch) -> None
     found = strips(np.stack([panorama(AZIMUTHS + heading) for heading in range(6)])).grey
     pairs = RNG.integers(0, 6, (20, 2))
     whole = turns(found, pairs)
+    unlike = misfit(found, pairs, whole)
     monkeypatch.setattr(compass, "BLOCK", 7)
     np.testing.assert_allclose(turns(found, pairs), whole, atol=1e-6)
+    np.testing.assert_allclose(misfit(found, pairs, whole), unlike, atol=1e-6)
 
 
 @pytest.mark.parametrize("stripes", [1, 27])
@@ -62,6 +64,24 @@ def test_pairs_of_two_sets_and_views_of_nothing() -> None:
     assert off(turns(ours, np.array([[0, 0]]), theirs) - 1.5)[0] < 0.5
     blank = strips(np.full((2, 10, 90, 3), 77, np.uint8)).grey
     assert np.isfinite(turns(blank, np.array([[0, 1]]))).all()
+
+
+def test_misfit_is_what_is_left_once_both_are_turned_alike() -> None:
+    first, turned, other = (panorama(AZIMUTHS + 0.7), panorama(AZIMUTHS - 0.5), panorama(2 * AZIMUTHS))
+    ours, theirs = strips(first[None]).grey, strips(np.stack([turned, other, first])).grey
+    pairs = np.array([[0, 0], [0, 0], [0, 1], [0, 2]])
+    found = misfit(ours, pairs, np.array([1.2, 0.2, 0.0, 0.0]), theirs)
+    assert found[0] < 2e-3
+    assert found[3] < 1e-9
+    assert (found[1:3] > 0.5).all()
+    assert (found <= 2).all()
+    # by Parseval it is the same over pixels, all but their means
+    grey = [view.astype(float).mean(axis=2) for view in (first, other)]
+    plain, away = (image - image.mean(axis=1, keepdims=True) for image in grey)
+    trusted = np.square(plain - away).sum() / (np.square(plain).sum() + np.square(away).sum())
+    assert found[2] == pytest.approx(trusted, abs=0.01)
+    inverted = strips((255 - first)[None]).grey
+    assert misfit(ours, pairs[:1], np.zeros(1), inverted)[0] == pytest.approx(2, abs=0.02)
 
 
 def ring(count: int, rng: np.random.Generator) -> tuple[sp.csr_array, np.ndarray, np.ndarray]:

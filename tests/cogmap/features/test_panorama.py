@@ -19,11 +19,11 @@ def test_a_turn_changes_no_magnitude_and_is_told() -> None:
     headings = np.random.default_rng(0).uniform(-np.pi, np.pi, 50)
     poses = np.column_stack([np.full((50, 2), 0.1), headings])
     poses[:, 1] = 1.0
-    found = strips(CAMERA.render(ROOM, poses)).grey
+    found = strips(CAMERA.render(ROOM, poses))
     spread = np.linalg.norm(found.turn_invariant - found.turn_invariant.mean(axis=0), axis=1)
     assert spread.max() < 0.1 * np.linalg.norm(found.turn_invariant.mean(axis=0))
     pairs = np.stack([np.arange(50), np.roll(np.arange(50), 1)], axis=1)
-    assert off(turns(found, pairs) - headings + np.roll(headings, 1)).max() < 1
+    assert off(turns(found.grey, pairs) - headings + np.roll(headings, 1)).max() < 1
 
 
 def test_a_step_beside_an_obstacle_is_not_taken_for_a_turn() -> None:
@@ -72,6 +72,31 @@ def test_a_coarse_grid_of_views_agrees_on_north() -> None:
     fresh = off(np.arctan2(y, x) - moved[:, 2] - north)
     assert np.median(fresh) < 2.5
     assert np.percentile(fresh, 90) < 8
+
+
+def test_known_views_tell_turns_and_whether_they_fit_and_are_stored() -> None:
+    rng = np.random.default_rng(0)
+    places = np.repeat(rng.uniform([-1.7, -1.2], [-1.0, -0.6], (40, 2)), 2, axis=0)
+    poses = np.column_stack([places, rng.uniform(-np.pi, np.pi, 80)])
+    code = PanoramaCode(10, neighbours=8).fit(CAMERA.render(ROOM, poses))
+    pairs = np.arange(80).reshape(-1, 2)
+    found = code.compare_known(pairs)
+    assert off(found.headings - poses[::2, 2] + poses[1::2, 2]).max() < 1
+    assert found.misfit.max() < 0.02
+    fresh = poses[::2] + [0, 0, 1.0]
+    seen = strips(CAMERA.render(ROOM, fresh))
+    # the second of these is far off: the best fit counts
+    near = np.column_stack([np.arange(0, 80, 2), np.roll(np.arange(0, 80, 2), 20)])
+    compared = code.compare(seen, near)
+    np.testing.assert_array_equal(compared.headings, code.heading(seen, near))
+    assert (compared.misfit < 0.02).all()
+    assert (code.compare(seen, near[:, 1:]).misfit > compared.misfit).all()
+    state = code.state()
+    assert {array.dtype.kind for array in state.values()} == {"f"}
+    other = PanoramaCode.from_state({name: array.copy() for name, array in state.items()})
+    np.testing.assert_array_equal(other.place(seen), code.place(seen))
+    for mine, theirs in zip(other.compare(seen, near), compared, strict=True):
+        np.testing.assert_array_equal(mine, theirs)
 
 
 @pytest.mark.parametrize("count", [1, 3])
