@@ -9,6 +9,7 @@ from jaxtyping import Float, Int
 
 from arena.angles import wrap_angle
 from arena.motions.policy import Sensed
+from cogmap.control.motor_model import body_motion, carried
 from cogmap.control.percept import Percept, Views
 from cogmap.control.steering import Steering
 from cogmap.errors import CogmapError
@@ -27,6 +28,8 @@ SETTLED = 2
 """Decisions at the goal after which it stops."""
 PATIENCE = 10
 """Decisions without the motion that was commanded, or in unknown places, after which it gives up."""
+TRUSTED = 0.5
+"""How much of what was foretold of its motion what is seen of it corrects."""
 HELD = 3
 """Of these, after each of which it backs off."""
 
@@ -73,9 +76,10 @@ class Reaching:
     """A policy (`arena.Policy`) that goes where images were taken; `Reacher.towards` makes it.
 
     At each decision the map perceives where the body is. What is still to come of the last command is
-    foretold, and from there the body turns to the next corner of its way, goes there, and at the last looks
-    as the goal does. Where it does not move as commanded it backs off; what is seen in unknown places is
-    bridged by what the motor model foretells.
+    foretold, and how far a body with mass coasts, and from there the body turns to the next corner of its
+    way, goes there, and at the last looks as the goal does. So it brakes in time without a plan for it.
+    Where it does not move as commanded it backs off; what is seen in unknown places is bridged by what the
+    motor model foretells.
 
     Attributes
     ----------
@@ -92,9 +96,11 @@ class Reaching:
         self._goals, self._goal = goals, there.position.astype(np.float64)
         self._last, self._before = np.zeros((count, 2)), np.zeros((count, 2))
         self._position, self._phase = np.full((count, 2), np.nan), np.full(count, np.nan)
+        self._motion = np.full((count, 3), np.nan)
         self._ahead: list[list[Float[np.ndarray, "2"]]] = [[] for _ in range(count)]
         self._tries, self._at_goal, self._held, self._unknown = (np.zeros(count, int) for _ in range(4))
-        self._backing, self._docked = np.zeros(count, int), np.zeros(count, bool)
+        self._backing = np.zeros(count, int)
+        self._docked, self._backwards = np.zeros(count, bool), np.zeros(count, bool)
         self.outcomes_ = np.full(count, Outcome.ON_THE_WAY, int)
 
     @property
@@ -125,9 +131,11 @@ class Reaching:
         """Tell where these are, and whether they moved as commanded."""
         seen = self._percept.perceive(views)
         position, phase = seen.position.astype(np.float64), seen.phase.astype(np.float64)
-        foretold, facing = self._steering.moved(
-            self._position[live], self._phase[live], self._last[live], self._before[live]
+        unmoved = np.isnan(self._motion[live])
+        expected = self._steering.moves(
+            self._last[live], self._before[live], np.where(unmoved, 0, self._motion[live])
         )
+        foretold, facing = carried(self._position[live], self._phase[live], expected)
         began = np.isfinite(self._phase[live])
         unknown = np.asarray(seen.novelty) > KNOWN
         self._unknown[live] = np.where(unknown, self._unknown[live] + 1, 0)
@@ -140,6 +148,8 @@ class Reaching:
             held, self._held[live] + 1, np.where(gone > 0.3 * wanted, 0, self._held[live])
         )
         self._backing[live[held & (self._held[live] % HELD == 0)]] = 2
+        moved = body_motion(self._position[live], self._phase[live], position, phase)
+        self._motion[live] = np.where(unmoved, moved, expected + TRUSTED * (moved - expected))
         self._position[live], self._phase[live] = position, phase
         self.outcomes_[live[self._unknown[live] >= PATIENCE]] = Outcome.LOST
         self.outcomes_[live[self._held[live] >= PATIENCE]] = Outcome.STUCK
@@ -156,7 +166,13 @@ class Reaching:
 
     def _decide(self, live: Int[np.ndarray, "live"], views: Views) -> Float[np.ndarray, "live 2"]:
         steering = self._steering
-        position, phase = steering.coming(self._position[live], self._phase[live], self._last[live])
+        position, phase = steering.coming(
+            self._position[live], self._phase[live], self._last[live], np.nan_to_num(self._motion[live])
+        )
+        coasting = np.linalg.norm(position - self._position[live], axis=1)
+        rests = (coasting < steering.close) & (
+            np.abs(wrap_angle(phase - self._phase[live])) < steering.facing
+        )
         target = np.array(
             [self._corner(explorer, here) for explorer, here in zip(live.tolist(), position, strict=True)]
         )
@@ -164,11 +180,14 @@ class Reaching:
         step = target - position
         far = np.linalg.norm(step, axis=1)
         bearing = wrap_angle(np.arctan2(step[:, 1], step[:, 0]) - phase - steering.course)
-        backwards = last & (far < NEAR * steering.pace) & (np.abs(bearing) > np.pi / 2)
+        # whoever goes backwards keeps to it for a while, lest a body that coasts changes its mind for ever
+        reach = np.where(self._backwards[live], 2, 1) * NEAR * steering.pace
+        backwards = last & (far < reach) & (np.abs(bearing) > np.pi / 2)
+        self._backwards[live] = backwards
         bearing = np.where(backwards, wrap_angle(bearing + np.pi), bearing)
         forward = np.where(backwards, -far, far) * np.clip(1 - np.abs(bearing) / ALIGNED, 0, 1)
-        self._tries[live] += last & (far < steering.pace)
-        ease = 2.0 ** (self._tries[live] / EASE)
+        self._tries[live] += last & (far < steering.pace) & (coasting < steering.pace)
+        ease = 2.0 ** (self._tries[live] / max(EASE, steering.coasting))
         docked = last & (far < steering.close * ease * np.where(self._docked[live], 2, 1))
         self._docked[live] = docked
         turn = bearing
@@ -183,7 +202,7 @@ class Reaching:
         there = docked & (np.abs(turn) < steering.facing * ease)
         forward[there] = turn[there] = 0
         self._at_goal[live] = np.where(there, self._at_goal[live] + 1, 0)
-        self.outcomes_[live[self._at_goal[live] >= SETTLED]] = Outcome.ARRIVED
+        self.outcomes_[live[rests & (self._at_goal[live] >= SETTLED)]] = Outcome.ARRIVED
         return steering.command(forward, turn)
 
     def _corner(self, explorer: int, here: Float[np.ndarray, "2"]) -> Float[np.ndarray, "2"]:

@@ -3,12 +3,13 @@
 import numpy as np
 from jaxtyping import Float
 
-from arena.angles import wrap_angle
-from cogmap.control.motor_model import MotorModel
+from cogmap.control.motor_model import MotorModel, carried
 from cogmap.errors import CogmapError
 
 CLOSE = 0.04
 """Share of a decision's way from the goal within which it counts as reached; of its turn a sixth of that."""
+RESTS, SLOWEST = 0.01, 0.95
+"""Share of its speed with which a coasting body counts as at rest; the most that is kept each decision."""
 CLEAR = 2.0
 """Times its own noise by which a motion must answer to commands."""
 
@@ -22,6 +23,8 @@ class Steering:
         Direction in which the body goes, rad from where the map says it looks.
     pace, turn
         How far it gets (the map's unit) and turns (rad) in a decision at most.
+    coasting
+        Decisions after which it rests when commands end.
     close, facing
         Distance (the map's unit) and turn (rad) from a goal within which it counts as reached.
 
@@ -33,7 +36,7 @@ class Steering:
 
     def __init__(self, motor: MotorModel) -> None:
         self._motor = motor
-        total = motor.response_.sum(axis=0)
+        total = motor.total_
         along, strength, _ = np.linalg.svd(total[:2])
         turns = np.abs(total[2]).max() > CLEAR * motor.noise_[2]
         if not (turns and strength[0] > CLEAR * motor.noise_[:2].min()):
@@ -41,11 +44,15 @@ class Steering:
                 "commands hardly move or turn this body, as far as its motor model knows; "
                 "babble longer, with both numbers of the command"
             )
+        along[:, 0] *= np.copysign(1.0, along[0, 0])  # rather where it looks than backwards
         self.course = float(np.arctan2(along[1, 0], along[0, 0]))
         inverse = np.linalg.pinv(total, rcond=1e-3)
         self._go = inverse[:, :2] @ along[:, 0]
         self._turn = inverse[:, 2]
         self.pace, self.turn = (float(1 / np.abs(gain).max()) for gain in (self._go, self._turn))
+        # of first order what comes late takes one decision; a body that coasts rests after some
+        lasting = min(float(np.abs(np.linalg.eigvals(motor.persistence_)).max()), SLOWEST)
+        self.coasting = max(1, int(np.ceil(np.log(RESTS) / np.log(lasting)))) if lasting > 0 else 1
         self.close, self.facing = CLOSE * self.pace, CLOSE / 6 * self.turn
 
     def command(
@@ -67,26 +74,19 @@ class Steering:
         position: Float[np.ndarray, "bodies 2"],
         phase: Float[np.ndarray, "bodies"],
         last: Float[np.ndarray, "bodies 2"],
+        motion: Float[np.ndarray, "bodies 3"],
     ) -> tuple[Float[np.ndarray, "bodies 2"], Float[np.ndarray, "bodies"]]:
-        """Foretell where bodies get by what is still to come of the last command."""
-        return _moved(position, phase, self._motor.predict(np.zeros_like(last), last))
+        """Foretell where bodies get by what is still to come of the last command, and by coasting."""
+        nothing = np.zeros((self.coasting, *last.shape))
+        for step in self._motor.roll_out(nothing, last, motion):
+            position, phase = carried(position, phase, step)
+        return position, phase
 
-    def moved(
+    def moves(
         self,
-        position: Float[np.ndarray, "bodies 2"],
-        phase: Float[np.ndarray, "bodies"],
         command: Float[np.ndarray, "bodies 2"],
         before: Float[np.ndarray, "bodies 2"],
-    ) -> tuple[Float[np.ndarray, "bodies 2"], Float[np.ndarray, "bodies"]]:
-        """Foretell where bodies get by a command after another."""
-        return _moved(position, phase, self._motor.predict(command, before))
-
-
-def _moved(
-    position: Float[np.ndarray, "bodies 2"],
-    phase: Float[np.ndarray, "bodies"],
-    motion: Float[np.ndarray, "bodies 3"],
-) -> tuple[Float[np.ndarray, "bodies 2"], Float[np.ndarray, "bodies"]]:
-    forward, left, turn = motion.T
-    step = (forward + 1j * left) * np.exp(1j * (phase + turn / 2))
-    return position + np.column_stack([step.real, step.imag]), wrap_angle(phase + turn)
+        motion: Float[np.ndarray, "bodies 3"],
+    ) -> Float[np.ndarray, "bodies 3"]:
+        """Foretell how bodies move by a command after another, and after a motion."""
+        return self._motor.predict(command, before, motion)

@@ -8,7 +8,9 @@ from cogmap.plots.acting.dreams import (
     plot_film,
     plot_surprise,
 )
+from cogmap.plots.acting.dynamics import plot_foretold, plot_stops
 from cogmap.plots.acting.journeys import plot_journeys
+from cogmap.plots.acting.looking_round import plot_looking_round
 from cogmap.plots.acting.reached import plot_reached
 from cogmap.plots.cells.afferents import plot_afferents
 from cogmap.plots.cells.cell_types import plot_cell_types
@@ -56,11 +58,13 @@ __all__ = [
     "plot_examples",
     "plot_expectations",
     "plot_film",
+    "plot_foretold",
     "plot_goals",
     "plot_grid_cells",
     "plot_journeys",
     "plot_likeness",
     "plot_localisation",
+    "plot_looking_round",
     "plot_metric_map",
     "plot_neighbours",
     "plot_position",
@@ -70,6 +74,7 @@ __all__ = [
     "plot_room",
     "plot_routes",
     "plot_sheet",
+    "plot_stops",
     "plot_surprise",
     "plot_translation",
     "plot_trend",

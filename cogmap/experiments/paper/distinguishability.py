@@ -74,8 +74,8 @@ def _look(conditions: Conditions, room: Arena, queries: int) -> _Seen:
     train, test = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), conditions.seed)
     nearest = walk.require("poses")[nearest_points(train, 1, queries=test).indices[:, 0]]
     poses = fresh.require("poses")
-    opposite = _opposite(room, poses)
-    confused = _apart(nearest, opposite) < _apart(nearest, poses)
+    opposite = opposite(room, poses)
+    confused = pose_distances(nearest, opposite) < pose_distances(nearest, poses)
     first = np.stack([poses[0], opposite[0]])
     return _Seen(
         nearest=pd.DataFrame(
@@ -87,14 +87,14 @@ def _look(conditions: Conditions, room: Arena, queries: int) -> _Seen:
     )
 
 
-def _opposite(room: Arena, poses: Float[np.ndarray, "views 3"]) -> Float[np.ndarray, "views 3"]:
+def opposite(room: Arena, poses: Float[np.ndarray, "views 3"]) -> Float[np.ndarray, "views 3"]:
     """Poses after half a turn about the middle of the room."""
     x0, y0, x1, y1 = room.bounds
     turned: np.ndarray = np.array([x0 + x1, y0 + y1, np.pi]) + poses * [-1, -1, 1]
     return turned
 
 
-def _apart(ours: Float[np.ndarray, "views 3"], theirs: Float[np.ndarray, "views 3"]) -> np.ndarray:
+def pose_distances(ours: Float[np.ndarray, "views 3"], theirs: Float[np.ndarray, "views 3"]) -> np.ndarray:
     """How far each pose is from the one in the same row, m."""
     return np.array([motion_distances(a[None], b[None])[0, 0] for a, b in zip(ours, theirs, strict=True)])
 
