@@ -19,7 +19,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import QuadMesh
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import ListedColormap, Normalize
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import FixedLocator, Locator, NullLocator, StrMethodFormatter
 from numpy.typing import ArrayLike
 
@@ -157,7 +157,7 @@ def tidy_legend(
     legend.get_frame().set(facecolor="white", edgecolor="none", alpha=0.85)
 
 
-def sheet_legend(figure: Figure, columns: int, **options: Any) -> None:
+def sheet_legend(figure: Figure | SubFigure, columns: int, **options: Any) -> None:
     """Explain below all axes of a figure what they share; options are those of `Figure.legend`."""
     look: dict[str, Any] = {"fontsize": SMALL, "labelcolor": INK, "frameon": False}
     figure.legend(loc="outside lower center", ncols=columns, **look, **options)

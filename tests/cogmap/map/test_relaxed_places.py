@@ -70,7 +70,7 @@ def test_places_and_headings_are_finer_than_those_recalled(
         (fresh.poses, recalled(fresh.poses, 9), located(relaxed, fresh)[:2]),
     ):
         before, after = errors(poses, *coarse), errors(poses, *fine)
-        assert after[0] < 0.35 * before[0]
+        assert after[0] < 0.6 * before[0]
         assert after[1] < 0.65 * before[1]
 
 
