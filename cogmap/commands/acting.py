@@ -126,7 +126,7 @@ def _metrics(go: Reaching, gone: Journeys) -> dict[str, object]:
 
 
 def _table(gone: Journeys) -> pd.DataFrame:
-    """A row a look: when, where, what was commanded there, and whether something stopped it."""
+    """Tell of each look when and where it was, what was commanded there, and whether something stopped it."""
     commands = np.concatenate([gone.commands[:, 0], np.full((1, 2), np.nan)])
     return pd.DataFrame(
         {
@@ -134,6 +134,6 @@ def _table(gone: Journeys) -> pd.DataFrame:
             **pose_columns(gone.poses[:, 0]),
             "first_command": commands[:, 0],
             "second_command": commands[:, 1],
-            "touched": np.append(gone.touched[:, 0], False),  # noqa: FBT003  nothing is commanded at the last
+            "touched": np.append(gone.touched[:, 0], False),
         }
     )

@@ -48,7 +48,8 @@ def plot_journeys(
     figure = new_figure(12.0, 5.2)
     left, right = cast("Sequence[SubFigure]", figure.subfigures(1, 2, width_ratios=[1.15, 1]))
     axes = left.subplots()
-    tidy_room(axes, title=f"{min(SHOWN, len(images))} of {len(images)} journeys to the pose of an image")
+    many = f"{min(SHOWN, len(images))} of {len(images)} journeys to the pose of an image"
+    tidy_room(axes, title=many if len(images) > 1 else "the journey to the pose of an image")
     draw_surfaces(axes, arena)
     for text in axes.texts:
         text.set_visible(False)
@@ -56,12 +57,15 @@ def plot_journeys(
     lengths = np.linalg.norm(np.diff(ways, axis=1), axis=2).sum(axis=1)
     bold = int(lengths[:SHOWN].argmax())
     shown = [pair for pair in range(min(SHOWN, len(images))) if pair != bold]
-    axes.add_collection(LineCollection(list(ways[shown]), colors=SOFT, linewidths=0.9, zorder=6, label="way"))
-    axes.plot(*gone.poses[0, shown, :2].T, "o", color=SOFT, markersize=3.5, zorder=7, label="start")
+    if shown:
+        thin = LineCollection(list(ways[shown]), colors=SOFT, linewidths=0.9, zorder=6, label="way")
+        axes.add_collection(thin)
+        axes.plot(*gone.poses[0, shown, :2].T, "o", color=SOFT, markersize=3.5, zorder=7, label="start")
     axes.plot(*ways[bold].T, color=GOOD, linewidth=2.0, zorder=8, label="the way at the right")
     axes.plot(*ways[bold, 0], "o", color=GOOD, markersize=6, zorder=9)
     if goals is not None:
-        draw_arrows(axes, goals[shown], 0.18, color=SOFT, width=0.004, zorder=7)
+        if shown:
+            draw_arrows(axes, goals[shown], 0.18, color=SOFT, width=0.004, zorder=7)
         draw_arrows(axes, goals[[bold]], 0.25, color=GOOD, width=0.008, zorder=9)
     _draw_contacts(axes, gone, [*shown, bold])
     frame_room(axes, arena.walkable.bounds, 0.15)

@@ -11,7 +11,7 @@ from tests.cogmap.conftest import Refined
 
 def test_a_refined_map_tells_places_and_turns(refined: Refined, camera: Camera) -> None:
     poses = np.array([[0.5, 0.3, 0.0], [-1.0, 0.6, 2.0]])
-    views, others = (camera.render(refined.room, poses + [0, 0, turn]) for turn in (0.0, 0.5))
+    views, others = (camera.render(refined.room, poses + np.array([0, 0, turn])) for turn in (0.0, 0.5))
     percept = MapPercept(refined.cmap)
     seen = percept.perceive(views)
     assert seen.plain is not None

@@ -83,7 +83,7 @@ def test_known_views_tell_turns_and_whether_they_fit_and_are_stored() -> None:
     found = code.compare_known(pairs)
     assert off(found.headings - poses[::2, 2] + poses[1::2, 2]).max() < 1
     assert found.misfit.max() < 0.02
-    fresh = poses[::2] + [0, 0, 1.0]
+    fresh = poses[::2] + np.array([0, 0, 1.0])
     seen = strips(CAMERA.render(ROOM, fresh))
     # the second of these is far off: the best fit counts
     near = np.column_stack([np.arange(0, 80, 2), np.roll(np.arange(0, 80, 2), 20)])

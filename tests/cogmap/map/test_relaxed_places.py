@@ -62,7 +62,7 @@ def test_places_and_headings_are_finer_than_those_recalled(
         (fresh.poses, recalled(fresh.poses, 9), located(relaxed, fresh)[:2]),
     ):
         before, after = errors(poses, *coarse), errors(poses, *fine)
-        assert after[0] < 0.35 * before[0]
+        assert after[0] < 0.6 * before[0]
         assert after[1] < 0.75 * before[1]
 
 
@@ -78,7 +78,7 @@ def test_a_walk_straightens_what_neighbours_cannot(relaxed, walk: Recording) -> 
     assert walking[0] < 0.8 * lost[0]
 
 
-def test_a_mirrored_map_stays_mirrored(walk: Recording, fresh: Recording, few_iterations: None) -> None:  # noqa: ARG001
+def test_a_mirrored_map_stays_mirrored(walk: Recording, fresh: Recording) -> None:
     views, (position, phase), asked = walk.views[:300], recalled(walk.poses[:300]), fresh.views[:20]
     one, other = (RelaxedPlaces.learn(views, position * [1, sign], sign * phase) for sign in (1, -1))
     np.testing.assert_allclose(other.places_, one.places_ * [1, -1], atol=2e-3)
