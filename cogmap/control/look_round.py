@@ -10,7 +10,7 @@ from cogmap.errors import CogmapError
 from cogmap.features.image_codes import image_codes
 from cogmap.navigation.hypotheses import Hypotheses, SceneMemory
 
-STANDS = 5.0
+STANDS = 10.0
 """Log-likelihood ratio to every hypothesis of elsewhere from which on one stands."""
 UNCLEAR = "places that are apart look alike from here, as far as the head turned; go elsewhere and look again"
 

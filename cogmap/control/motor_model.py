@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_array, check_choice
+from cogmap.inputs import check_array
 from cogmap.map.activity import Activity
 from cogmap.map.storage import read_state, write_state
 
@@ -59,7 +59,8 @@ class MotorModel:
     """
 
     def __init__(self, order: Literal[1, 2] = 1) -> None:
-        check_choice("order", order, (1, 2))
+        if order not in {1, 2}:
+            raise CogmapError(f"a motor model is of order 1 or 2, not {order}")
         self.order = order
         causes = 4 if order == 1 else 7
         self._gram, self._cross = np.zeros((causes, causes)), np.zeros((causes, 3))
