@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from cogmap.errors import CogmapError, UnlikeArithmeticWarning, UntrustedMapWarning
     from cogmap.evaluation.scoring import score
     from cogmap.features import BagOfWords
+    from cogmap.imagination import Imagination
     from cogmap.map.activity import Activity
     from cogmap.map.cognitive_map import CognitiveMap
     from cogmap.map.even_memory import EvenMemory
@@ -23,6 +24,7 @@ __all__ = [
     "CogmapError",
     "CognitiveMap",
     "EvenMemory",
+    "Imagination",
     "LandmarkIsomap",
     "Localiser",
     "MotorModel",
@@ -49,6 +51,7 @@ _HOMES = {
     "errors": ("CogmapError", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
     "evaluation.scoring": ("score",),
     "features": ("BagOfWords",),
+    "imagination": ("Imagination",),
     "map.activity": ("Activity",),
     "map.cognitive_map": ("CognitiveMap",),
     "map.even_memory": ("EvenMemory",),

@@ -8,10 +8,15 @@ import pytest
 
 PROJECT = Path(__file__).parents[1] / "pyproject.toml"
 NEVER = {
-    ("cogmap.map", "cogmap.features", "cogmap.graph", "cogmap.shape", "cogmap.navigation"): (
-        "cogmap.evaluation",
-        "cogmap.experiments",
-    ),
+    (
+        "cogmap.map",
+        "cogmap.features",
+        "cogmap.graph",
+        "cogmap.shape",
+        "cogmap.navigation",
+        "cogmap.imagination",
+    ): ("cogmap.evaluation", "cogmap.experiments"),
+    ("cogmap.navigation", "cogmap.imagination"): ("cogmap.control",),
     ("cogmap.graph", "cogmap.shape", "cogmap.map"): ("arena",),
     ("neurons",): ("arena", "cogmap"),
     ("arena",): ("neurons", "cogmap"),

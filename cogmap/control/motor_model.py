@@ -104,7 +104,7 @@ class MotorModel:
         commands: Float[np.ndarray, "steps 2"],
         previous: Float[np.ndarray, "steps 2"] | None = None,
     ) -> Float[np.ndarray, "steps 3"]:
-        """Foretell forward, left (the map's unit) and turn (rad) of steps; without `previous` commands last."""
+        """Foretell forward, left (map's unit) and turn (rad) of steps; without `previous` commands last."""
         now, late = self.response_
         before = commands if previous is None else previous
         foretold: np.ndarray = commands @ now.T + before @ late.T

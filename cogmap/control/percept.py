@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float, UInt8
+from jaxtyping import Float
 
 from cogmap.errors import CogmapError
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.relaxed_places import RelaxedPlaces
 
-Views = UInt8[np.ndarray, "views height width 3"]
+Views = Any
+"""Images (views, height, width, 3) uint8, or what slices to such."""
 
 
 @runtime_checkable

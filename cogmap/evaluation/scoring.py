@@ -45,7 +45,8 @@ def score(
         the silent ones included. Without a compass, when every phase is NaN, no heading cell passes and the
         errors of heading are left out. Where there is a metric map also `metric_map_r2`, the share of the
         variance of (x, y) that it explains after one similarity, and `metric_map_median_m`, how far it is
-        off.
+        off. Of a map that was refined, those of heading and metric map also as the charts alone tell them,
+        with the prefix `plain_`.
 
     Raises
     ------
@@ -64,10 +65,24 @@ def score(
         "place_cells_passing": float(place.place["passing"].mean()),
         "place_coverage": place.coverage(room),
     }
-    if np.isnan(activity.phase).all():
-        # Without a compass no cell passes, and there is no heading to be wrong.
-        figures["heading_cells_passing"] = 0.0
-    else:
+    # Without a compass no cell passes, and there is no heading to be wrong.
+    lost = np.isnan(activity.phase).all()
+    figures["heading_cells_passing"] = 0.0 if lost else float(heading.heading["passing"].mean())
+    figures |= _pose_figures(activity, poses, train)
+    if activity.plain is not None and activity_train.plain is not None:
+        plain = _pose_figures(activity.plain, poses, (activity_train.plain, poses_train))
+        figures |= {f"plain_{name}": value for name, value in plain.items()}
+    return figures
+
+
+def _pose_figures(
+    activity: Activity,
+    poses: Float[np.ndarray, "views 3"],
+    train: tuple[Activity, Float[np.ndarray, "train 3"]],
+) -> dict[str, float]:
+    """Measure headings and positions on the metric map, as far as there are any."""
+    figures, (activity_train, poses_train) = dict[str, float](), train
+    if not np.isnan(activity.phase).all():
         frame = fit_heading_frame(activity_train.phase, poses_train[:, 2])
         turn = heading_errors(activity.phase, poses[:, 2], frame)
         turn_deg = np.rad2deg(np.abs(turn))
@@ -75,9 +90,9 @@ def score(
             "heading_median_deg": float(np.median(turn_deg)),
             "heading_p95_deg": float(np.percentile(turn_deg, 95)),
             "heading_resultant": float(abs(np.mean(np.exp(1j * turn)))),
-            "heading_cells_passing": float(heading.heading["passing"].mean()),
         }
     if not np.isnan(activity.position).all():
+        positions = poses[:, :2]
         laid = place_map(activity.position, fit_map_frame(activity_train.position, poses_train[:, :2]))
         figures |= {
             "metric_map_r2": float(r2_score(positions, laid, multioutput="variance_weighted")),

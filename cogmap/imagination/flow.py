@@ -9,6 +9,9 @@ from jaxtyping import Float32, UInt8
 MARGIN = 16
 """Columns that are wrapped around on both sides; flow between near places is shorter."""
 
+ROWS = 32
+"""To which a panorama of fewer is enlarged."""
+
 
 def panoramic_flow(
     first: UInt8[np.ndarray, "height width 3"], second: UInt8[np.ndarray, "height width 3"]
@@ -22,8 +25,18 @@ def panoramic_flow(
     search = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_ULTRAFAST)
     # at half the resolution: a quarter, the preset's own, doubles the error of a dream's place
     search.setFinestScale(1)
-    grey = [wrapped(cv2.cvtColor(view, cv2.COLOR_RGB2GRAY)) for view in (first, second)]
-    return np.asarray(search.calc(grey[0], grey[1], None)[:, MARGIN:-MARGIN])
+    # of fewer rows than two patches at that resolution the search reads beyond the image
+    times = -(-ROWS // len(first))
+    grey = [_enlarged(wrapped(cv2.cvtColor(view, cv2.COLOR_RGB2GRAY)), times) for view in (first, second)]
+    flow = search.calc(grey[0], grey[1], np.zeros((*grey[0].shape, 2), np.float32))
+    middle = slice(times // 2, None, times)
+    return np.asarray(flow[middle, middle][:, MARGIN:-MARGIN] / times, np.float32)
+
+
+def _enlarged(image: np.ndarray, times: int) -> np.ndarray:
+    if times == 1:
+        return image
+    return np.asarray(cv2.resize(image, None, fx=times, fy=times, interpolation=cv2.INTER_CUBIC))
 
 
 def wrapped(image: np.ndarray) -> np.ndarray:

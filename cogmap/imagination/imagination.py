@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass
-from functools import cached_property
-from typing import Any, Literal, Protocol, get_args
+from functools import cached_property, partial
+from typing import Any, Literal, Protocol, get_args, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float, Float32, UInt8
+from jaxtyping import Float, Float32, Int, UInt8
 from numpy.typing import ArrayLike
 
+from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
-from cogmap.imagination.places import RememberedPlaces, Sources
+from cogmap.imagination.alignment import aligned, coarse
+from cogmap.imagination.places import VISIT, RememberedPlaces, Sources
 from cogmap.imagination.stroll import stroll
-from cogmap.imagination.turning import Painted, blended, columns_turned, turning_sense
+from cogmap.imagination.surprise import Surprise, unusual
+from cogmap.imagination.turning import Painted, blended, columns_turned
 from cogmap.imagination.warp import warped
 from cogmap.inputs import check_array, check_choice, check_views, checked_count
+from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.even_memory import EvenMemory
 from cogmap.navigation.place_graph import PlaceGraph
@@ -35,7 +39,13 @@ Method = Literal["turned", "blend", "warp"]
 STRAIGHT = 0.2
 """Turn between views (rad) up to which a body counts as going straight on."""
 
+UNKNOWN = 4.0
+"""Novelty beyond which a view is of another place."""
+CALIBRATED = 500
+"""Remembered views that tell what is usual."""
 
+
+@runtime_checkable
 class Motor(Protocol):
     """What foretells motion from commands, as a `MotorModel` does."""
 
@@ -95,7 +105,7 @@ class Imagination:
     memory: Any
     sources: int = 5
 
-    def at(self, position: ArrayLike, heading: ArrayLike, *, method: Method = "warp") -> Dream:
+    def at(self, position: ArrayLike, heading: ArrayLike | float, *, method: Method = "warp") -> Dream:
         """Imagine the views from places, (targets, 2) or (2,), in directions, (targets,) or one for all.
 
         Raises
@@ -155,6 +165,8 @@ class Imagination:
         views: Any,
         motor: Motor | None = None,
         commands: Float[np.ndarray, "views 2"] | None = None,
+        *,
+        previous: Float[np.ndarray, "views 2"] | None = None,
     ) -> Dream:
         """Expect what is seen next after each of some views.
 
@@ -165,25 +177,77 @@ class Imagination:
         motor, commands
             What foretells the motion that commands, one for each view, bring about. Without, the body is
             taken to go straight on, as far as it usually got from view to view of the remembered walk.
+        previous
+            Commands before these; they go on unchanged when None.
         """
-        position, phase = self.perceive(views)
+        poses = self._poses(views)
+        position, phase = poses[:, :2], poses[:, 2]
         if (motor is None) != (commands is None):
             raise CogmapError("give a motor model and commands for each view, or neither")
         if motor is None or commands is None:
             motion = np.broadcast_to([self.pace, 0.0, 0.0], (len(phase), 3))
         else:
-            motion = np.asarray(motor.predict(commands), np.float64)
+            motion = np.asarray(motor.predict(commands, previous), np.float64)
             check_array("predicted motion", motion, (len(phase), 3))
-        moved = (motion[:, 0] + 1j * motion[:, 1]) * np.exp(1j * phase)
-        return self.at(position + np.column_stack([moved.real, moved.imag]), phase + motion[:, 2])
+        # along the chord of the arc, as it was learnt
+        ahead = _ahead(phase + motion[:, 2] / 2)
+        left = np.column_stack([-ahead[:, 1], ahead[:, 0]])
+        moved = motion[:, :1] * ahead + motion[:, 1:2] * left
+        return self.at(position + moved, phase + motion[:, 2])
+
+    def surprise(self, views: Any) -> Surprise:
+        """Tell what surprises in views: what differs from what is imagined at their own pose, and where.
+
+        Where something has changed the map perceives wrong poses; they are corrected by what has not
+        (`recognise`). The threshold is told by how much 500 remembered views surprise those that remember
+        all but the visits on which these were seen.
+        """
+        poses = self._poses(views)
+        pixels = np.stack(list(self._unusual(views, poses)))
+        # aligning takes four times as long as all else: only where something may have changed
+        doubtful = np.flatnonzero(pixels.max(axis=(1, 2)) > self.threshold / 2)
+        if len(doubtful):
+            seen = np.stack([views[view] for view in doubtful])
+            poses[doubtful] = self._aligned(seen, poses[doubtful], None)
+            pixels[doubtful] = np.stack(list(self._unusual(seen, poses[doubtful])))
+        return Surprise(
+            pixels=pixels,
+            position=poses[:, :2],
+            phase=poses[:, 2],
+            threshold=self.threshold,
+            sense=self.sense,
+        )
+
+    def recognise(self, views: Any) -> Float[np.ndarray, "views 3"]:
+        """Tell from where views were seen, position and phase, as what is imagined there fits them best.
+
+        Unlike `perceive` it looks at every pixel and mistrusts those that do not fit, so it holds when a
+        thing was moved; it takes thirty times as long.
+        """
+        return self._aligned(views, self._poses(views), None)
+
+    @cached_property
+    def threshold(self) -> float:
+        """Above what surprises where nothing has changed: 2.25 times what one view in 100 reaches."""
+        places = self.places
+        if len(places.phase) < 4 * VISIT:
+            raise CogmapError(
+                f"{len(places.phase)} remembered views do not tell what is usual; remember at least {4 * VISIT}"
+            )
+        chosen = np.unique(np.linspace(0, len(places.phase) - 1, CALIBRATED).astype(int))
+        views = np.stack([places.views[view] for view in chosen])
+        poses = np.column_stack([places.position[chosen], places.phase[chosen]])
+        poses = self._aligned(views, poses, chosen)
+        most = [pixels.max() for pixels in self._unusual(views, poses, chosen)]
+        return float(2.25 * np.percentile(most, 99))
 
     @cached_property
     def places(self) -> RememberedPlaces:
         """What is remembered, where the map perceives it."""
         views = self.memory.views_ if isinstance(self.memory, EvenMemory) else self.memory
         check_views(views, self.cmap.view_shape_)
-        position, phase = self._perceived(views)
-        return RememberedPlaces(views, position, phase)
+        known = self._perceived(views)
+        return RememberedPlaces(views, known.position.astype(np.float64), known.phase.astype(np.float64))
 
     @cached_property
     def ways(self) -> PlaceGraph:
@@ -193,17 +257,19 @@ class Imagination:
     @cached_property
     def sense(self) -> int:
         """Whether phase grows to the left (1) or to the right (−1), in a mirrored map."""
-        places = self.places
-        return turning_sense(places.views, places.position, places.phase)
+        relaxed = self.cmap.relaxed_places_
+        if relaxed is None:
+            raise CogmapError(
+                f"a map without relaxed places does not turn views in the mind: {self.cmap.refine_reason_}"
+            )
+        return -1 if relaxed.mirrored_ else 1
 
     @cached_property
     def pace(self) -> float:
-        """How far the body got forward from view to view of the remembered walk, where it went straight on."""
-        places = self.places
-        turn = np.angle(np.exp(1j * np.diff(places.phase)))
-        middle = places.phase[:-1] + turn / 2
-        step = np.diff(places.position, axis=0)
-        forward = step[:, 0] * np.cos(middle) + step[:, 1] * np.sin(middle)
+        """How far the body got from view to view of the remembered walk, where it went straight on."""
+        position, phase = self.places.position, self.places.phase
+        turn = wrap_angle(np.diff(phase))
+        forward = (np.diff(position, axis=0) * _ahead(phase[:-1] + turn / 2)).sum(axis=1)
         straight = forward[np.abs(turn) < STRAIGHT]
         if not len(straight):
             raise CogmapError("the remembered views are no walk that goes straight on; give a motor model")
@@ -215,13 +281,20 @@ class Imagination:
         Raises
         ------
         CogmapError
-            For views of another size, or that are of one colour.
+            For views of another size, of one colour, or of nowhere that is remembered.
         """
         check_views(views, self.cmap.view_shape_)
         for index, view in enumerate(views):
-            if np.ptp(view.reshape(-1, 3), axis=0).max() == 0:
+            if not np.ptp(view.reshape(-1, 3), axis=0).any():
                 raise CogmapError(f"view {index} is of one colour and shows no place; give another")
-        return self._perceived(views)
+        activity = self._perceived(views)
+        if activity.novelty is not None and activity.novelty.max() > UNKNOWN:
+            index = int(activity.novelty.argmax())
+            raise CogmapError(
+                f"view {index} is {activity.novelty[index]:.1f} times as far from what is remembered as is "
+                "usual: it is of another place; give one that was explored"
+            )
+        return activity.position.astype(np.float64), activity.phase.astype(np.float64)
 
     def paint(
         self, sources: Sources, phase: Float[np.ndarray, "targets"], *, method: Method = "warp"
@@ -240,15 +313,42 @@ class Imagination:
         with one_thread():
             yield from in_order(painted, range(len(phase)))
 
-    def _perceived(self, views: Any) -> tuple[Float[np.ndarray, "views 2"], Float[np.ndarray, "views"]]:
+    def _poses(self, views: Any) -> Float[np.ndarray, "views 3"]:
+        check_views(views, self.cmap.view_shape_)
+        seen = self._perceived(views)
+        return np.column_stack([seen.position, seen.phase]).astype(np.float64)
+
+    def _perceived(self, views: Any) -> Activity:
         activity = self.cmap.perceive(views)
+        if np.isnan(activity.phase).any():
+            raise CogmapError("this map has no compass, so nothing is imagined; explore more")
         if np.isnan(activity.position).any():
             raise CogmapError(
                 f"this map tells no positions, so nothing is imagined: {self.cmap.metric_reason_}"
             )
-        if np.isnan(activity.phase).any():
-            raise CogmapError("this map has no compass, so nothing is imagined; explore more")
-        return activity.position.astype(np.float64), activity.phase.astype(np.float64)
+        return activity
+
+    def _aligned(
+        self, views: Any, poses: Float[np.ndarray, "views 3"], without: Int[np.ndarray, "views"] | None
+    ) -> Float[np.ndarray, "views 3"]:
+        def paint(where: Float[np.ndarray, "views 3"], method: Method) -> Float32[np.ndarray, "views pixels"]:
+            sources = self.places.sources(where[:, :2], self.sources, without=without)
+            return np.stack([coarse(each.view) for each in self.paint(sources, where[:, 2], method=method)])
+
+        seen = np.stack([coarse(view) for view in views])
+        reach = np.array([self.places.spacing, self.places.spacing, 0.01])
+        return aligned(seen, poses, partial(paint, method="warp"), partial(paint, method="blend"), reach)
+
+    def _unusual(
+        self,
+        views: Any,
+        poses: Float[np.ndarray, "views 3"],
+        without: Int[np.ndarray, "views"] | None = None,
+    ) -> Iterator[Float32[np.ndarray, "height width"]]:
+        sources = self.places.sources(poses[:, :2], self.sources, without=without)
+        distances = sources.distances[:, 0] / self.places.spacing
+        for view, painted, distance in zip(views, self.paint(sources, poses[:, 2]), distances, strict=True):
+            yield unusual(view, painted, float(distance))
 
     def _walked(
         self, route: Float[np.ndarray, "points 2"], step: float | None, start: float | None, end: float | None
@@ -258,6 +358,11 @@ class Imagination:
         return self.at(poses[:, :2], poses[:, 2])
 
 
+def _ahead(phase: Float[np.ndarray, "views"]) -> Float[np.ndarray, "views 2"]:
+    return np.column_stack([np.cos(phase), np.sin(phase)])
+
+
 def as_pixels(view: Float32[np.ndarray, "*shape"]) -> UInt8[np.ndarray, "*shape"]:
     """Round grey levels to what an image holds."""
-    return np.clip(np.rint(view), 0, 255).astype(np.uint8)
+    pixels: np.ndarray = np.clip(np.rint(view), 0, 255).astype(np.uint8)
+    return pixels

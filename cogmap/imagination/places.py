@@ -17,6 +17,9 @@ APART = 0.5
 RIDGE = 1e-2
 """Of the affine weights, in units of the mean of their three normal equations."""
 
+VISIT = 100
+"""Views of a walk before and after one that may be of the same visit to its place."""
+
 
 class Sources(NamedTuple):
     """Remembered views that a view from elsewhere is made of, the nearest first."""
@@ -46,6 +49,13 @@ class RememberedPlaces:
         """To find what is near."""
         return KDTree(self.position)
 
+    @cached_property
+    def spacing(self) -> float:
+        """Median distance from one place to the nearest other, in the unit of the map."""
+        # beside itself, and not from where the body turned on the spot
+        distances = self.tree.query(self.position, k=[2])[0]
+        return float(np.median(distances))
+
     def sources(
         self,
         position: Float[np.ndarray, "targets 2"],
@@ -71,20 +81,20 @@ class RememberedPlaces:
         count
             How many sources each has at most.
         without
-            A remembered view that each target may not use, as one that is itself imagined.
+            A remembered view that is itself imagined, if so: it may not be used, nor any of the same visit.
 
         References
         ----------
         Arya & Mount (1993), Approximate nearest neighbor queries in fixed dimensions: the pruning rule.
         Cleveland (1979), Robust locally weighted regression: the affine weights.
         """
-        candidates = min(CANDIDATES, len(self.position) - (without is not None))
+        candidates = min(CANDIDATES, len(self.position))
+        asked = min(CANDIDATES + (2 * VISIT + 1) * (without is not None), len(self.position))
         # asked for as a list, also one neighbour has an axis of its own
-        asked = np.arange(1, candidates + 1 + (without is not None))
-        reach, near = self.tree.query(position, k=asked)
+        reach, near = (np.asarray(part) for part in self.tree.query(position, k=np.arange(1, asked + 1)))
         if without is not None:
-            # the forbidden one goes last, or else the farthest, and is cut off
-            order = np.argsort(near == without[:, None], axis=1, kind="stable")[:, :candidates]
+            reach = np.where(np.abs(near - without[:, None]) <= VISIT, np.inf, reach)
+            order = np.argsort(reach, axis=1, kind="stable")[:, :candidates]
             reach, near = np.take_along_axis(reach, order, axis=1), np.take_along_axis(near, order, axis=1)
         places = self.position[near]
         chosen = np.zeros((len(near), count), np.int64)
@@ -92,7 +102,8 @@ class RememberedPlaces:
         for candidate in range(1, candidates):
             kept = np.take_along_axis(places, chosen[:, :, None], axis=1)
             gap = np.linalg.norm(kept - places[:, candidate, None], axis=2).min(axis=1)
-            fits = np.flatnonzero((taken < count) & (gap > APART * reach[:, candidate]))
+            free = np.isfinite(reach[:, candidate]) & (taken < count)
+            fits = np.flatnonzero(free & (gap > APART * reach[:, candidate]))
             chosen[fits, taken[fits]] = candidate
             taken[fits] += 1
         there = np.arange(count) < taken[:, None]
@@ -116,6 +127,8 @@ def _weights(
     first = np.broadcast_to(np.array([[1.0], [0.0], [0.0]]), (len(normal), 3, 1))
     affine = (weighed @ np.linalg.solve(normal, first))[:, :, 0]
     near = there / (np.sqrt(squares) + 1e-3 * mean)
-    return tuple(  # type: ignore[return-value]
-        (one / one.sum(axis=1, keepdims=True)).astype(np.float32) for one in (affine, near)
-    )
+    return _shares(affine), _shares(near)
+
+
+def _shares(weights: Float[np.ndarray, "targets sources"]) -> Float32[np.ndarray, "targets sources"]:
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True), np.float32)

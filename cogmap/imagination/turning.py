@@ -3,49 +3,13 @@
 from __future__ import annotations
 
 import typing
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Float32, UInt8
 
 from arena.angles import wrap_angle
-from cogmap.errors import CogmapError
-from cogmap.features.compass import turns
-from cogmap.features.strips import strips
-from cogmap.graph.knn import nearest_points
 from cogmap.kernels import kernel
-
-PAIRS = 1000
-"""Pairs of views that are asked by how much a turn shifts the columns."""
-LEAST_RESULTANT = 0.99
-"""Of turns seen and turns perceived, where turning counts as a shift."""
-
-
-def turning_sense(
-    views: Any, position: Float[np.ndarray, "views 2"], phase: Float[np.ndarray, "views"]
-) -> int:
-    """Tell whether phase grows to the left (1) or, in a mirrored map, to the right (−1), from views alone.
-
-    The turn between panoramas from near places is compared with the difference of their phases.
-
-    Raises
-    ------
-    CogmapError
-        When they do not agree: these views do not shift as a whole when the body turns.
-    """
-    chosen = np.linspace(0, len(phase) - 1, min(PAIRS, len(phase))).astype(int)
-    near = nearest_points(position, 1).indices[chosen, 0]
-    both = strips(np.stack([np.asarray(views[view]) for view in np.concatenate([chosen, near])]))
-    seen = turns(both, np.arange(2 * len(chosen)).reshape(2, -1).T)
-    felt = phase[chosen] - phase[near]
-    agreed = {sense: float(abs(np.exp(1j * (seen - sense * felt)).mean())) for sense in (1, -1)}
-    best = max(agreed, key=agreed.__getitem__)
-    if agreed[best] < LEAST_RESULTANT:
-        raise CogmapError(
-            f"turning does not shift the columns of these views (R = {agreed[best]:.3f}): they cannot be "
-            "turned in the mind; give panoramas of a body that turns on the spot, or use method='decoder'"
-        )
-    return best
 
 
 def columns_turned(turn: Float[np.ndarray, "*shape"], width: int) -> Float32[np.ndarray, "*shape"]:
@@ -78,7 +42,9 @@ def blended(
 
 @kernel(nogil=True, fastmath={"contract"})
 @typing.no_type_check
-def _blended(views, shifts, affine, near):
+def _blended(
+    views: np.ndarray, shifts: np.ndarray, affine: np.ndarray, near: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     sources, height, width, _ = views.shape
     mixed = np.zeros((height, width, 3), np.float32)
     spread = np.zeros((height, width), np.float32)

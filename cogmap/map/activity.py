@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -45,5 +45,5 @@ class Activity:
 
     def __getitem__(self, views: slice | Int[np.ndarray, "_"] | Bool[np.ndarray, "_"]) -> Activity:
         """Take some of the views."""
-        parts = {each.name: getattr(self, each.name) for each in fields(self)}
-        return Activity(**{name: None if part is None else part[views] for name, part in parts.items()})
+        parts = ((each.name, getattr(self, each.name)) for each in fields(self))
+        return replace(self, **{name: part[views] for name, part in parts if part is not None})

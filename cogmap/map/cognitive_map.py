@@ -261,8 +261,10 @@ class CognitiveMap:
                 self._look(network.recall(strip, None if logs is None else logs[rows]))
                 for rows, strip in self._strips(views)
             ]
-        columns = [torch.cat(part).cpu().numpy() for part in zip(*parts, strict=True)]
-        plain = Activity(*columns)
+        place, heading, phase, odour, position = (
+            torch.cat(part).cpu().numpy() for part in zip(*parts, strict=True)
+        )
+        plain = Activity(place, heading, phase, odour, position)
         if self.relaxed_places_ is None:
             return plain
         there = self.relaxed_places_.locate(views, plain.position)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Complex128, Float, Int
+from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import LinearOperator, cg
 
 from arena.angles import wrap_angle
@@ -16,11 +17,13 @@ WALKS = 0.5
 """Mean cosine between steps and headings from which on the views come in the order of a walk."""
 LEVEL = 300.0
 """How much a heading counts that its neighbours contradict, beside a step of the same angle."""
-LENGTH = 0.1
+LENGTH = 0.03
 """How much the length of a step counts beside its direction: bodies keep to a direction, not to a pace."""
 ROUNDS = 3
 """Of weights that count outliers less."""
-MOST_ITERATIONS = 500
+FEW = 200
+"""Places that bend with the whole map."""
+MOST_ITERATIONS = 60
 """Of conjugate gradients in a round; what is left then is a bend of the whole map below a millimetre."""
 
 
@@ -71,9 +74,9 @@ def relax_walk(start: PoseGraph, affine: sp.csr_array) -> PoseGraph:
     if not steps.follow(start.places):
         return start
     bend = sp.csr_array(sp.eye_array(len(start.places)) - affine)
-    places, added = start.places, np.zeros(len(start.places))
+    places, added, wide = start.places, np.zeros(len(start.places)), _spread(start.places)
     for _ in range(ROUNDS):
-        places, added = _round(steps, bend, places, added)
+        places, added = _round(steps, bend, wide, places, added)
     return PoseGraph(places, wrap_angle(start.headings + added))
 
 
@@ -97,6 +100,7 @@ class _Steps:
 def _round(
     steps: _Steps,
     bend: sp.csr_array,
+    wide: Float[np.ndarray, "views few"],
     places: Complex128[np.ndarray, "views"],
     added: Float[np.ndarray, "views"],
 ) -> tuple[Complex128[np.ndarray, "views"], Float[np.ndarray, "views"]]:
@@ -121,7 +125,7 @@ def _round(
         slope[:, 2] *= LEVEL
         slope[:, :2] += back @ np.column_stack([pull.real, pull.imag])
         slope[:, 2] -= forth @ (counted * step.real * across)
-        return slope
+        return np.asarray(slope)
 
     def normal(flat: Float[np.ndarray, "_"]) -> Float[np.ndarray, "_"]:
         moved = flat.reshape(views, 3)
@@ -134,11 +138,39 @@ def _round(
     downhill = -gradient(now, step.real - 1, step.imag).ravel()
     stiff = np.asarray(bend.power(2).sum(axis=0))
     held = stiff + back.power(2) @ (0.5 * (paced + counted))
-    scale = np.column_stack([held, held, LEVEL * stiff + forth.power(2) @ counted]).ravel()
-    system = LinearOperator((3 * views, 3 * views), matvec=normal, dtype=np.float64)
-    moved = cg(system, downhill, rtol=1e-4, maxiter=MOST_ITERATIONS, M=sp.diags_array(1 / scale))[0]
-    moved = moved.reshape(views, 3)
-    return places + length * (moved[:, 0] + 1j * moved[:, 1]), added + moved[:, 2]
+    scale = np.column_stack([held, held, LEVEL * stiff + forth.power(2) @ counted])
+    # What bends the whole map is hardly seen from view to view, and is solved for a few places beforehand.
+    edges, ends, bent = (part @ wide for part in (differences, step.real[:, None] * means, bend))
+    turns, still = (ahead.real[:, None], ahead.imag[:, None]), np.zeros_like(edges)
+    along = np.hstack([turns[0] * edges, turns[1] * edges, still])
+    across = np.hstack([-turns[1] * edges, turns[0] * edges, -ends])
+    coarse = along.T @ (paced[:, None] * along) + across.T @ (counted[:, None] * across)
+    coarse += np.kron(np.diag([1.0, 1.0, LEVEL]), bent.T @ bent) + 1e-8 * np.eye(len(coarse))
+    factor = cho_factor(coarse)
+
+    def precondition(flat: Float[np.ndarray, "_"]) -> Float[np.ndarray, "_"]:
+        slope = flat.reshape(views, 3)
+        few = cho_solve(factor, (wide.T @ slope).T.ravel()).reshape(3, -1).T
+        return np.asarray((slope / scale + wide @ few).ravel())
+
+    shape = (3 * views, 3 * views)
+    system, inverse = (LinearOperator(shape, matvec=each, dtype=float) for each in (normal, precondition))
+    found = cg(system, downhill, rtol=1e-4, maxiter=MOST_ITERATIONS, M=inverse)[0]
+    right, up, turned = found.reshape(views, 3).T
+    return places + length * (right + 1j * up), added + turned
+
+
+def _spread(places: Complex128[np.ndarray, "views"]) -> Float[np.ndarray, "views few"]:
+    """Share views among a few places that are far apart, smoothly; rows sum to one."""
+    nearest, chosen = np.abs(places - places[0]), [0]
+    while len(chosen) < min(FEW, len(places)):
+        chosen.append(int(nearest.argmax()))
+        nearest = np.minimum(nearest, np.abs(places - places[chosen[-1]]))
+    width = max(float(nearest.max()), 1e-12)
+    distances = np.abs(places[:, None] - places[chosen])
+    # nearest first, so that a view far from all still belongs to one
+    shares = np.exp(-0.5 * (np.square(distances) - np.square(nearest)[:, None]) / width**2)
+    return np.asarray(shares / shares.sum(axis=1, keepdims=True))
 
 
 def _cauchy(residuals: Float[np.ndarray, "steps"]) -> Float[np.ndarray, "steps"]:

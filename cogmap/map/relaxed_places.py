@@ -68,12 +68,14 @@ class RelaxedPlaces:
     ----------
     places_, headings_
         Of the remembered views, (views, 2) in the map's metric frame and (views,) rad.
+    mirrored_
+        Whether phase grows to the right.
     """
 
     def __init__(
         self, code: PanoramaCode, places: Float[np.ndarray, "views 2"], usual: _Usual, *, mirrored: bool
     ) -> None:
-        self._code, self.places_, self._usual, self._mirrored = code, places, usual, mirrored
+        self._code, self.places_, self._usual, self.mirrored_ = code, places, usual, mirrored
 
     @classmethod
     def learn(
@@ -127,7 +129,7 @@ class RelaxedPlaces:
     @property
     def headings_(self) -> Float[np.ndarray, "views"]:
         """Headings of the remembered views in the map's frame, rad."""
-        return -self._code.headings_ if self._mirrored else self._code.headings_
+        return -self._code.headings_ if self.mirrored_ else self._code.headings_
 
     def locate(self, views: Any, recalled: Float[np.ndarray, "views 2"]) -> Located:
         """Place panoramas, given the positions that the map recalls of them.
@@ -142,7 +144,7 @@ class RelaxedPlaces:
         position = np.einsum("vk,vkc->vc", weights, self.places_[indices])
         north = np.where(indices < 0, indices[:, :1], indices)[:, :NORTH]
         heading, unlike = self._code.compare(seen, north)
-        phase = wrap_angle(-heading if self._mirrored else heading)
+        phase = wrap_angle(-heading if self.mirrored_ else heading)
         unusual = np.sqrt(unlike / self._usual.misfit)
         return Located(position, phase, np.maximum(near.distances[:, -1] / self._usual.apart, unusual))
 
@@ -150,7 +152,7 @@ class RelaxedPlaces:
         """Tell by how much (rad, as phase) to turn from each view to look as another from there does."""
         pairs = np.repeat(np.arange(len(views))[:, None], 2, axis=1)
         turned = turns(strips(others).grey, pairs, strips(views).grey)
-        return -turned if self._mirrored else turned
+        return -turned if self.mirrored_ else turned
 
     def nearest(self, views: Any) -> Int[np.ndarray, "views"]:
         """Tell which remembered view looks most like each of these from any heading."""
@@ -161,7 +163,7 @@ class RelaxedPlaces:
         """Give all that was learnt, by name."""
         own = {
             "positions": self.places_,
-            "mirrored": np.array(self._mirrored),
+            "mirrored": np.array(self.mirrored_),
             "usual": np.array(self._usual),
         }
         return {**self._code.state(), **own}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
@@ -165,7 +166,7 @@ class PlaceGraph:
         return np.asarray(KDTree(self._middles).query(points)[1])
 
     def _clearance_along(self, start: Float[np.ndarray, "2"], goal: Float[np.ndarray, "2"]) -> float:
-        """The least distance from what is not free along a line; 0 where it leaves what is."""
+        """Give the least distance from what is not free along a line; 0 where it leaves what is."""
         count = int(np.ceil(2 * np.linalg.norm(goal - start) / self._cell)) + 1
         points = start + np.linspace(0, 1, count)[:, None] * (goal - start)
         cells = np.floor((points - self._corner) / self._cell).astype(int)
@@ -174,7 +175,7 @@ class PlaceGraph:
 
     def _pulled_straight(self, way: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, "corners 2"]:
         """Leave out corners while the way keeps its distance."""
-        legs = np.array([self._clearance_along(a, b) for a, b in zip(way[:-1], way[1:], strict=True)])
+        legs = np.array([self._clearance_along(a, b) for a, b in pairwise(way)])
         kept = [0]
         while kept[-1] < len(way) - 1:
             here = kept[-1]

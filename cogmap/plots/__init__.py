@@ -1,6 +1,13 @@
 """The figures, from results only: arrays in, a matplotlib Figure out."""
 
 from cogmap.plots.acting.catchment import plot_catchment
+from cogmap.plots.acting.dreams import (
+    plot_dream_errors,
+    plot_dreams,
+    plot_expectations,
+    plot_film,
+    plot_surprise,
+)
 from cogmap.plots.acting.journeys import plot_journeys
 from cogmap.plots.acting.reached import plot_reached
 from cogmap.plots.cells.afferents import plot_afferents
@@ -43,8 +50,12 @@ __all__ = [
     "plot_confusion",
     "plot_courses",
     "plot_cue_control",
+    "plot_dream_errors",
+    "plot_dreams",
     "plot_embedding",
     "plot_examples",
+    "plot_expectations",
+    "plot_film",
     "plot_goals",
     "plot_grid_cells",
     "plot_journeys",
@@ -59,6 +70,7 @@ __all__ = [
     "plot_room",
     "plot_routes",
     "plot_sheet",
+    "plot_surprise",
     "plot_translation",
     "plot_trend",
     "plot_tuning_curves",

@@ -11,8 +11,9 @@ from jaxtyping import Float, UInt8
 
 from arena import Brownian, Camera, Disc, Recording
 from arena.angles import wrap_angle
+from arena.eye.base import Eye
 from cogmap.control import Outcome, Reacher, Reaching
-from cogmap.control.percept import Views
+from cogmap.control.percept import Percept, Views
 from cogmap.control.steering import Steering
 from cogmap.errors import CogmapError
 from cogmap.evaluation.peers.image_descent import ImageDescent, catchment, rotational_difference
@@ -130,7 +131,7 @@ def reaching(conditions: Conditions) -> Result:
         captions={
             "journeys": "Journeys to the poses of images, and what is seen on the way of one",
             "reached": "How far from the goal each journey ended, under disturbances and beside peers",
-            "catchment": "From where descent on image differences reaches a goal, and from where the policy does",
+            "catchment": "From where descent on image differences reaches a goal, and from where the policy",
         },
     )
 
@@ -142,16 +143,14 @@ def _peers(
     room, body, (starts, goals) = conditions.room, Disc(), ends
     truth, eye = TruePercept(), PoseEye()
     rng = np.random.default_rng(conditions.seed)
-    sees = {
-        "true_": (truth, eye, walk.require("poses")[:, :2]),
-        "plain_": (_PlainPercept(cmap), camera, None),
-    }
+    plain = _PlainPercept(cmap)
+    known = {"true_": walk.require("poses")[:, :2], "plain_": plain.perceive(walk.views).position}
+    sees: dict[str, tuple[Percept, Eye]] = {"true_": (truth, eye), "plain_": (plain, camera)}
     tables = {}
-    for name, (percept, looks, known) in sees.items():
+    for name, (percept, looks) in sees.items():
         motor = babble(room, looks, percept, body, conditions.seed)
-        places = percept.perceive(walk.views).position if known is None else known
         images = looks.render(room, goals, rng=rng)
-        go = Reaching(percept, PlaceGraph(places.astype(np.float64)), Steering(motor), images)
+        go = Reaching(percept, PlaceGraph(known[name].astype(np.float64)), Steering(motor), images)
         gone = travel(room, go, looks, starts, body=body, seed=conditions.seed)
         tables[name] = scored(room, gone, goals, body).assign(outcome=_names(go))
     steering = Steering(babble(room, eye, truth, body, conditions.seed))

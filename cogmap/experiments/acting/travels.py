@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from arena import Arena, Babble, Camera, Disc, explore
 from arena.acting import Journeys, journeys
-from arena.exploration import Eye
+from arena.eye.base import Eye
 from arena.motions.policy import Policy
 from cogmap.control import MotorModel
 from cogmap.control.percept import Percept

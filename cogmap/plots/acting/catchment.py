@@ -48,7 +48,7 @@ def plot_catchment(arena: Arena, fields: Sequence[Field]) -> Figure:
     for index, (field, above, below) in enumerate(zip(fields, *panels, strict=True)):
         free = np.isfinite(field.difference)
         caught = field.caught[free].mean()
-        image = _draw(above, arena, field, field.difference, "viridis_r", most)
+        image = _draw(above, arena, field, field.difference, most)
         above.set_title(f"descent on image differences reaches it from {caught:.0%}", fontsize=8, color=INK)
         rows, columns = np.nonzero(free & ~field.caught)
         middles = [
@@ -56,7 +56,7 @@ def plot_catchment(arena: Arena, fields: Sequence[Field]) -> Figure:
         ]
         above.plot(*middles, "x", color=BAD, markersize=2.5, markeredgewidth=0.6, zorder=5)
         reached = (field.ended_m[free] <= 0.05).mean()
-        ended = _draw(below, arena, field, 100 * field.ended_m, "viridis_r", 5.0)
+        ended = _draw(below, arena, field, 100 * field.ended_m, 5.0)
         below.set_title(f"the policy reaches it from {reached:.0%}", fontsize=8, color=INK)
         if index == len(fields) - 1:
             colour_bar(above, image, "image difference (grey levels)")
@@ -64,9 +64,7 @@ def plot_catchment(arena: Arena, fields: Sequence[Field]) -> Figure:
     return figure
 
 
-def _draw(
-    axes: Axes, arena: Arena, field: Field, values: Float[np.ndarray, "y x"], colours: str, most: float
-) -> AxesImage:
+def _draw(axes: Axes, arena: Arena, field: Field, values: Float[np.ndarray, "y x"], most: float) -> AxesImage:
     tidy_room(axes)
     draw_surfaces(axes, arena)
     for text in axes.texts:
@@ -77,7 +75,7 @@ def _draw(
         values,
         origin="lower",
         extent=(x, x + columns * cell, y, y + rows * cell),
-        cmap=colormaps[colours].with_extremes(bad=ABSENT),
+        cmap=colormaps["viridis_r"].with_extremes(bad=ABSENT),
         vmin=0,
         vmax=most,
         zorder=1,

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import cast
+
 import numpy as np
 from jaxtyping import Float, UInt8
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 
 from arena.acting import Journeys
 from arena.eye.camera import Camera
@@ -43,7 +46,7 @@ def plot_journeys(
         Poses (m and rad) of the goals, None where these are not known, and their images.
     """
     figure = new_figure(12.0, 5.2)
-    left, right = np.ravel(figure.subfigures(1, 2, width_ratios=[1.15, 1]))
+    left, right = cast("Sequence[SubFigure]", figure.subfigures(1, 2, width_ratios=[1.15, 1]))
     axes = left.subplots()
     many = f"{min(SHOWN, len(images))} of {len(images)} journeys to the pose of an image"
     tidy_room(axes, title=many if len(images) > 1 else "the journey to the pose of an image")

@@ -18,11 +18,6 @@ def poses() -> np.ndarray:
     return walk.poses
 
 
-@pytest.fixture(autouse=True)
-def _few_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pose_graph, "MOST_ITERATIONS", 150)
-
-
 def affine(poses: np.ndarray) -> sp.csr_array:
     """What makes up each place from those near it."""
     near = nearest_points(poses[:, :2], NEIGHBOURS).indices

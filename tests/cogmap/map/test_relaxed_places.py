@@ -6,7 +6,6 @@ import pytest
 from arena import Arena, Brownian, Camera, Recording, explore
 from arena.angles import wrap_angle
 from cogmap import CogmapError
-from cogmap.map import pose_graph
 from cogmap.map.relaxed_places import Located, RelaxedPlaces, _alike
 
 CORNERS = ((-0.8, -0.6), (0.8, -0.6), (0.8, 0.6), (-0.8, 0.6))
@@ -37,13 +36,6 @@ def walked(camera: Camera, views: int, seed: int) -> Recording:
 
 
 @pytest.fixture(scope="module")
-def few_iterations():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(pose_graph, "MOST_ITERATIONS", 60)
-        yield
-
-
-@pytest.fixture(scope="module")
 def walk(camera: Camera) -> Recording:
     return walked(camera, 700, 0)
 
@@ -54,7 +46,7 @@ def fresh(camera: Camera) -> Recording:
 
 
 @pytest.fixture(scope="module")
-def relaxed(walk: Recording, few_iterations: None) -> RelaxedPlaces:  # noqa: ARG001
+def relaxed(walk: Recording) -> RelaxedPlaces:
     return RelaxedPlaces.learn(walk.views, *recalled(walk.poses))
 
 
@@ -86,7 +78,7 @@ def test_a_walk_straightens_what_neighbours_cannot(relaxed, walk: Recording) -> 
     assert walking[0] < 0.8 * lost[0]
 
 
-def test_a_mirrored_map_stays_mirrored(walk: Recording, fresh: Recording, few_iterations: None) -> None:  # noqa: ARG001
+def test_a_mirrored_map_stays_mirrored(walk: Recording, fresh: Recording) -> None:
     views, (position, phase), asked = walk.views[:300], recalled(walk.poses[:300]), fresh.views[:20]
     one, other = (RelaxedPlaces.learn(views, position * [1, sign], sign * phase) for sign in (1, -1))
     np.testing.assert_allclose(other.places_, one.places_ * [1, -1], atol=2e-3)

@@ -1,0 +1,129 @@
+"""Surprise: how much a view differs from what was expected, against what is usual there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from jaxtyping import Bool, Float, Float32, Num
+
+from cogmap.errors import CogmapError
+from cogmap.imagination.turning import Painted
+
+FLOOR = 4.0
+"""Difference (grey levels) that is usual anywhere."""
+SLIP = 0.03
+"""By how many pixels an edge is off, for a target as far from memory as its spacing; it grows as the square."""
+DOUBT = 8.0
+"""By how much the variance of a dream is larger than that of its sources, which err alike."""
+PATCH = 11 / 360
+"""How wide a patch is that is judged as a whole, in turns."""
+BEYOND = 0.5
+"""How far the plan reaches beyond the remembered places, in units of their extent."""
+CELLS = 120
+"""Of the plan, along its longer side."""
+
+
+@dataclass(frozen=True)
+class Surprise:
+    """What surprises in some views, and where they were seen from."""
+
+    pixels: Float32[np.ndarray, "views height width"]
+    """Difference from what is imagined, in units of what is usual there."""
+    position: Float[np.ndarray, "views 2"]
+    phase: Float[np.ndarray, "views"]
+    """Pose at which they were imagined, in the frame of the map."""
+    threshold: float
+    """Above what is seen where nothing has changed."""
+    sense: int
+    """Whether phase grows to the left (1) or to the right (−1)."""
+
+    @property
+    def columns(self) -> Float32[np.ndarray, "views width"]:
+        """The most surprising pixel of each column."""
+        return np.asarray(self.pixels.max(axis=1))
+
+    @property
+    def alarms(self) -> Bool[np.ndarray, "views"]:
+        """Which views show something that has changed."""
+        return np.asarray(self.pixels.max(axis=(1, 2)) > self.threshold)
+
+    @property
+    def shares(self) -> Float[np.ndarray, "views"]:
+        """Share of each view that surprises: nearly all of it after a kidnapping, or when a lamp is out."""
+        return np.asarray((self.pixels > self.threshold).mean(axis=(1, 2)))
+
+    def plan(self) -> Plan:
+        """Pool what surprises over all views, back-projected onto the map: where something has changed.
+
+        A cell is as surprising as the alarmed views are in its direction, on average: 1 where each is most
+        surprised, and else the square of the ratio to that.
+
+        Raises
+        ------
+        CogmapError
+            When no view shows anything that has changed.
+        """
+        alarms = np.flatnonzero(self.alarms)
+        if not len(alarms):
+            raise CogmapError("nothing surprises in these views, so there is nothing to place on the map")
+        low, high = self.position.min(axis=0), self.position.max(axis=0)
+        extent = float((high - low).max())
+        low, high = low - BEYOND * extent, high + BEYOND * extent
+        cell = float((high - low).max()) / CELLS
+        x, y = (np.arange(start, stop, cell) + cell / 2 for start, stop in zip(low, high, strict=True))
+        width = self.pixels.shape[2]
+        columns = self.columns[alarms]
+        profiles = np.square(columns / columns.max(axis=1, keepdims=True))
+        share = np.zeros((len(y), len(x)))
+        for position, phase, profile in zip(self.position[alarms], self.phase[alarms], profiles, strict=True):
+            bearing = self.sense * (np.arctan2(y[:, None] - position[1], x - position[0]) - phase)
+            # column 0 looks straight back over the left shoulder, the middle one ahead
+            share += profile[np.floor((np.pi - bearing) * width / (2 * np.pi)).astype(int) % width]
+        return Plan(x, y, share / len(alarms))
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How surprising each place of the map is."""
+
+    x: Float[np.ndarray, "columns"]
+    y: Float[np.ndarray, "rows"]
+    """Middles of the cells, in the unit of the map."""
+    share: Float[np.ndarray, "rows columns"]
+    """How much the alarmed views are surprised in its direction, from 0 to 1."""
+
+    @property
+    def changed(self) -> Float[np.ndarray, "2"]:
+        """Where something has changed: the most surprising cell."""
+        row, column = np.unravel_index(self.share.argmax(), self.share.shape)
+        return np.array([self.x[column], self.y[row]])
+
+
+def unusual(
+    view: Num[np.ndarray, "height width 3"], painted: Painted, distance: float
+) -> Float32[np.ndarray, "height width"]:
+    r"""Compare a view with what was imagined, pixel by pixel.
+
+    .. math:: \sqrt{\overline{(v - D)^2} \big/ \overline{\sigma^2}},\quad
+        \sigma^2 = \sigma_0^2 + 8 s^2 + (\epsilon d^2\,|\nabla D|)^2,
+
+    means over a patch; s is the spread of the sources, and edges are the less certain the farther, d, the
+    nearest remembered place is, in units of the memory's spacing.
+    """
+    imagined = np.clip(painted.view, 0, 255)
+    error = np.square(imagined - view).mean(axis=2)
+    across = (np.roll(imagined, -1, axis=1) - np.roll(imagined, 1, axis=1)) / 2
+    down = np.gradient(imagined, axis=0)
+    edges = (np.square(across) + np.square(down)).mean(axis=2)
+    variance = FLOOR**2 + DOUBT * np.square(painted.spread) + (SLIP * distance**2) ** 2 * edges
+    return np.asarray(np.sqrt(_patches(error) / _patches(variance)), np.float32)
+
+
+def _patches(values: Float32[np.ndarray, "height width"]) -> Float32[np.ndarray, "height width"]:
+    half = round(PATCH * values.shape[1] / 2)
+    around = cv2.copyMakeBorder(values.astype(np.float32), 0, 0, half, half, cv2.BORDER_WRAP)
+    means = cv2.blur(around, (2 * half + 1, 2 * half + 1))[:, half : around.shape[1] - half]
+    # sums that run along rows leave less than nothing behind where all is 0
+    return np.maximum(means, 0)

@@ -1,0 +1,35 @@
+import numpy as np
+import pytest
+
+from cogmap.imagination.surprise import Surprise, unusual
+from cogmap.imagination.turning import Painted
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+def test_bearings_from_many_views_meet_where_something_changed(sense: int) -> None:
+    rng = np.random.default_rng(0)
+    position, phase, there = rng.uniform(-1, 1, (40, 2)), rng.uniform(-np.pi, np.pi, 40), np.array([1.4, 0.6])
+    pixels = np.zeros((40, 5, 180), np.float32)
+    for view, (place, heading) in enumerate(zip(position, phase, strict=True)):
+        bearing = sense * (np.arctan2(*(there - place)[::-1]) - heading)
+        column = int(np.floor((np.pi - bearing) * 180 / (2 * np.pi))) % 180
+        pixels[view, 2, (column + np.arange(-1, 2)) % 180] = 5.0
+        # and something else, each time elsewhere
+        pixels[view, 1, rng.integers(180)] = 4.0
+    found = Surprise(pixels, position, phase, 3.0, sense)
+    assert found.alarms.all()
+    np.testing.assert_allclose(found.shares, pixels.astype(bool).mean(axis=(1, 2)))
+    np.testing.assert_allclose(found.plan().changed, there, atol=0.15)
+
+
+def test_what_is_usual_grows_with_spread_and_with_distance_at_edges() -> None:
+    rng = np.random.default_rng(0)
+    view = rng.integers(0, 256, (20, 90, 3)).astype(np.float32)
+    sure, unsure = np.zeros((20, 90), np.float32), np.full((20, 90), 30, np.float32)
+    other = np.clip(view + 25, 0, 255)
+    near = unusual(other, Painted(view, sure), 0.0)
+    assert (unusual(other, Painted(view, unsure), 0.0) < near).all()
+    assert (unusual(other, Painted(view, sure), 5.0) < near).all()
+    assert not unusual(view, Painted(view, sure), 1.0).any()
+    plain = np.full((20, 90, 3), 100, np.float32)
+    np.testing.assert_allclose(unusual(plain + 8, Painted(plain, sure), 9.0), 2.0, rtol=1e-5)
