@@ -3,13 +3,11 @@
 from pathlib import Path
 from typing import Annotated
 
-import cv2
 import numpy as np
 from cyclopts import Parameter
-from jaxtyping import UInt8
 
 from arena import Recording
-from cogmap.commands.common import Json, tell
+from cogmap.commands.common import Json, read_image, tell
 from cogmap.errors import CogmapError
 from cogmap.imagination import Imagination
 from cogmap.map.cognitive_map import CognitiveMap
@@ -45,22 +43,9 @@ def _dream(
     """
     check_film(out)
     grown, walk = CognitiveMap.load(cmap), Recording.open(recording).without_truth()
-    ends = [_image(path, grown.view_shape_) for path in (start, goal)]
+    ends = [read_image(path, grown.view_shape_) for path in (start, goal)]
     if grown.relaxed_places_ is None:
         grown.refine(walk.views)
     dream = Imagination(grown, memory=walk.views).film(*ends)
     write_film(dream.views, out)
     tell({"film": str(out), "frames": len(dream), "spread": float(np.median(dream.spread))}, as_json=as_json)
-
-
-def _image(path: Path, shape: tuple[int, ...]) -> UInt8[np.ndarray, "height width 3"]:
-    """Read an RGB image of a size."""
-    image = cv2.imread(str(path), cv2.IMREAD_COLOR) if path.is_file() else None
-    if image is None:
-        raise CogmapError(f"{path} is no image that can be read; give a PNG")
-    if image.shape != tuple(shape):
-        raise CogmapError(
-            f"{path} has {image.shape[0]}×{image.shape[1]} pixels but the map was learnt from "
-            f"{shape[0]}×{shape[1]}; take it with the camera the map was learnt with"
-        )
-    return np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB))
