@@ -69,7 +69,7 @@ class SceneMemory:
     @cached_property
     def courses(self) -> Float[np.ndarray, "views odorants"]:
         """How smell changes along the walk about each view."""
-        return self._means(1, 1 + BESIDE) - self._means(-BESIDE, 0)
+        return np.asarray(self._means(1, 1 + BESIDE) - self._means(-BESIDE, 0))
 
     @cached_property
     def spot(self) -> float:
@@ -178,4 +178,4 @@ class Hypotheses:
         near = np.linalg.norm(self._places - self._places[best], axis=1) < APART * self._memory.spot
         near &= self._courses @ self._courses[best] > 0
         near[best] = True
-        return ~near
+        return np.asarray(~near)

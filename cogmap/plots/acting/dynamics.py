@@ -36,7 +36,7 @@ def plot_stops(arena: Arena, stops: list[_Stops], tables: dict[str, pd.DataFrame
         `position_error_m` and `stopped` of every journey, by who foretells.
     """
     figure = new_figure(12.0, 5.6)
-    left, right = figure.subfigures(1, 2, width_ratios=[1.3, 1]).flat
+    left, right = figure.subfigures(1, 2, width_ratios=[1.3, 1], squeeze=False).flat
     plan = left.subplots()
     tidy_room(plan, title="from full speed (thin: run-up) to a stop at the pose of an image (arrow)")
     draw_surfaces(plan, arena)
