@@ -34,8 +34,9 @@ class MotorModel:
     for position x, heading θ and command u; M₁ is what comes late, and A what goes on by itself: with it, of
     second order, the model holds for bodies with mass and friction, whatever these and the gain of commands
     are; without, A is 0. All is found by least squares in which steps that a wall or a slip spoilt count
-    less (Geman–McClure weights), kept as sums, so that models merge and learn on. What a command does is not known
-    before: neither which number turns and which goes, nor its sign or gain, nor whether the map is mirrored.
+    less (Geman–McClure weights), kept as sums, so that models merge and learn on. What a command does is not
+    known before: neither which number turns and which goes, nor its sign or gain, nor whether the map is
+    mirrored.
 
     Parameters
     ----------
