@@ -16,7 +16,7 @@ UNCLEAR = "places that are apart look alike from here as far as the head turned;
 
 
 class LookRound:
-    """A policy (`arena.Policy`) that turns its head until one hypothesis about where it is stands, or gives up.
+    """A policy (`arena.Policy`) that turns its head until one hypothesis of where it is stands, or gives up.
 
     It turns to one side, look by look, then to the other. Then `resolved_` says whether one stands; where
     none does what looks alike is alike, as far as it may turn, and the most likely is a guess.
