@@ -8,7 +8,6 @@ from cyclopts import Parameter
 
 from arena import Recording
 from cogmap.commands.common import Json, read_image, tell
-from cogmap.errors import CogmapError
 from cogmap.imagination import Imagination
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.pages.film import check_film, write_film
