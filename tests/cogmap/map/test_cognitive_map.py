@@ -411,9 +411,7 @@ def test_what_cannot_be_refined_says_so_and_stays_as_it_was(
     views = stroll.views[:100]
     with pytest.warns(UntrustedMapWarning, match="places are not relaxed: "):
         untrusted = copy.deepcopy(learnt).refine(views)
-    assert (
-        untrusted.refine_reason_ == untrusted.reason_ or untrusted.refine_reason_ == untrusted.metric_reason_
-    )
+    assert untrusted.refine_reason_ == (untrusted.reason_ or untrusted.metric_reason_)
     assert untrusted.relaxed_places_ is None
     few = copy.deepcopy(refined.cmap)
     with pytest.warns(UntrustedMapWarning, match="places are not relaxed: there are 60 views"):
