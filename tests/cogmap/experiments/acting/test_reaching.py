@@ -3,7 +3,7 @@ import pandas as pd
 import pytest
 
 from arena import Camera
-from cogmap.experiments.acting import reaching
+from cogmap.experiments.acting import reaching, travels
 from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.registry import run_experiment
 from cogmap.experiments.result import Result
@@ -15,6 +15,8 @@ def result(refined: Refined, camera: Camera) -> Result:
     with pytest.MonkeyPatch.context() as patch:
         for name, value in {"PAIRS": 3, "DISTURBED": 2, "GRID": 0.9, "SNAPSHOTS": 1}.items():
             patch.setattr(reaching, name, value)
+        patch.setattr(travels, "MOST_STEPS", 40)
+        patch.setattr(travels, "BABBLED", 120)
         patch.setattr(Camera, "panoramic", lambda *_, **__: camera)
         patch.setattr(reaching, "grow_map", lambda *_, **__: refined.cmap)
         patch.setattr(type(refined.cmap), "refine", lambda cmap, _: cmap)

@@ -26,7 +26,7 @@ def test_journeys_are_measured() -> None:
     gone = Journeys(0.2 * np.arange(4), poses, np.zeros((3, 3, 2)), touched, np.array([2, 3, 0]))
     table = scored(ROOM, gone, goals, BODY)
     np.testing.assert_allclose(table["position_error_m"], [0.03, 0.01, 0.3])
-    np.testing.assert_allclose(table["heading_error_deg"], np.rad2deg([0.02, 2 * np.pi - 6.29, 0]), atol=1e-6)
+    np.testing.assert_allclose(table["heading_error_deg"], np.rad2deg([0.02, 6.29 - 2 * np.pi, 0]), atol=1e-6)
     np.testing.assert_allclose(table["way_m"], [0.27, 0.05 + np.hypot(0.41, 0.05), 0], atol=1e-9)
     np.testing.assert_allclose(table["shortest_m"], [0.3, 0.4, 0.3], atol=1e-6)
     assert table["seconds"].tolist() == pytest.approx([0.4, 0.6, 0.0])
