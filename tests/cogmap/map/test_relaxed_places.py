@@ -8,6 +8,7 @@ from arena import Arena, Brownian, Camera, Recording, explore
 from arena.angles import wrap_angle
 from cogmap import CogmapError
 from cogmap.map.relaxed_places import Located, RelaxedPlaces, _alike
+from cogmap.threads import one_thread
 
 CORNERS = ((-0.8, -0.6), (0.8, -0.6), (0.8, 0.6), (-0.8, 0.6))
 ROOM = Arena.load("furnished").model_copy(update={"platform": (CORNERS,)})
@@ -144,7 +145,7 @@ def test_few_views_are_refused(walk: Recording) -> None:
 def test_one_thread_or_two_relax_to_the_same_bits(walk: Recording) -> None:
     learnt = []
     for threads in (1, 2):
-        with threadpool_limits(threads):
+        with threadpool_limits(threads), one_thread():
             learnt.append(RelaxedPlaces.learn(walk.views[:200], *recalled(walk.poses[:200])).state())
     for name, array in learnt[0].items():
         np.testing.assert_array_equal(array, learnt[1][name])

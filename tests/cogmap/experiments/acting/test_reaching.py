@@ -9,6 +9,8 @@ from cogmap.experiments.registry import run_experiment
 from cogmap.experiments.result import Result
 from tests.cogmap.conftest import Refined
 
+pytestmark = pytest.mark.full  # eight conditions, each with a spell of babbling: half a minute
+
 
 @pytest.fixture(scope="module")
 def result(refined: Refined, camera: Camera) -> Result:
