@@ -20,11 +20,15 @@ Painter = Callable[[Pose], Float32[np.ndarray, "views pixels"]]
 
 def coarse(view: Num[np.ndarray, "height width 3"]) -> Float32[np.ndarray, "pixels"]:
     """Average a panorama down to `WIDTH` columns: a step moves edges by a fraction of a pixel of these."""
-    height, width, _ = view.shape
-    shrunk = min(1.0, WIDTH / width)
-    size = (round(width * shrunk), max(1, round(height * shrunk)))
-    small = cv2.resize(np.asarray(view, np.float32), size, interpolation=cv2.INTER_AREA)
+    height, width = coarse_size(*view.shape[:2])
+    small = cv2.resize(np.asarray(view, np.float32), (width, height), interpolation=cv2.INTER_AREA)
     return np.asarray(np.clip(small, 0, 255)).ravel()
+
+
+def coarse_size(height: int, width: int) -> tuple[int, int]:
+    """Give height and width of a coarse panorama."""
+    shrunk = min(1.0, WIDTH / width)
+    return max(1, round(height * shrunk)), round(width * shrunk)
 
 
 def aligned(

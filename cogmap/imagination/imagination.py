@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
 from cogmap.imagination.alignment import aligned, coarse
+from cogmap.imagination.decoder import ChartDecoder
 from cogmap.imagination.places import VISIT, RememberedPlaces, Sources
 from cogmap.imagination.stroll import stroll
 from cogmap.imagination.surprise import Surprise, unusual
@@ -26,9 +27,12 @@ from cogmap.map.even_memory import EvenMemory
 from cogmap.navigation.place_graph import PlaceGraph
 from cogmap.threads import in_order, one_thread
 
-Method = Literal["turned", "blend", "warp"]
+Turned = Literal["turned", "blend", "warp"]
+Method = Literal["decoder", Turned]
 """How a view is made.
 
+"decoder"
+    of what the charts have learnt from all that is remembered (`decoder.ChartDecoder`), in 3 ms and blurred;
 "turned"
     of the nearest place, turned;
 "blend"
@@ -121,9 +125,12 @@ class Imagination:
             raise CogmapError(f"heading has shape {phase.shape}; give one for each of {len(where)} places")
         phase = np.broadcast_to(phase.reshape(-1), len(where)).copy()
         check_array("heading", phase, (len(where),))
-        count = 1 if method == "turned" else checked_count("sources", self.sources)
+        count = checked_count("sources", self.sources) if method in {"blend", "warp"} else 1
         sources = self.places.sources(where, count)
-        found = list(self.paint(sources, phase, method=method))
+        if method == "decoder":
+            found = list(self.decoder.paint(np.column_stack([where, phase])))
+        else:
+            found = list(self.paint(sources, phase, method=method))
         return Dream(
             views=np.stack([as_pixels(each.view) for each in found]),
             position=where,
@@ -250,6 +257,12 @@ class Imagination:
         return RememberedPlaces(views, known.position.astype(np.float64), known.phase.astype(np.float64))
 
     @cached_property
+    def decoder(self) -> ChartDecoder:
+        """How what is remembered changes with pose across each chart of the map."""
+        places = self.places
+        return ChartDecoder.learn(self.cmap, places.views, np.column_stack([places.position, places.phase]))
+
+    @cached_property
     def ways(self) -> PlaceGraph:
         """What plans ways over the remembered places."""
         return PlaceGraph(self.places.position)
@@ -297,7 +310,7 @@ class Imagination:
         return activity.position.astype(np.float64), activity.phase.astype(np.float64)
 
     def paint(
-        self, sources: Sources, phase: Float[np.ndarray, "targets"], *, method: Method = "warp"
+        self, sources: Sources, phase: Float[np.ndarray, "targets"], *, method: Turned = "warp"
     ) -> Iterator[Painted]:
         """Make views from their sources, one after the other, in threads."""
         places = self.places
@@ -331,7 +344,7 @@ class Imagination:
     def _aligned(
         self, views: Any, poses: Float[np.ndarray, "views 3"], without: Int[np.ndarray, "views"] | None
     ) -> Float[np.ndarray, "views 3"]:
-        def paint(where: Float[np.ndarray, "views 3"], method: Method) -> Float32[np.ndarray, "views pixels"]:
+        def paint(where: Float[np.ndarray, "views 3"], method: Turned) -> Float32[np.ndarray, "views pixels"]:
             sources = self.places.sources(where[:, :2], self.sources, without=without)
             return np.stack([coarse(each.view) for each in self.paint(sources, where[:, 2], method=method)])
 

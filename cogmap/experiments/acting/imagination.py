@@ -27,7 +27,7 @@ TARGETS = 300
 """Fresh views that are imagined."""
 WAYS = 6
 """Dreamt from one fresh view to another."""
-METHODS: tuple[Method, ...] = ("turned", "blend", "warp")
+METHODS: tuple[Method, ...] = ("decoder", "turned", "blend", "warp")
 
 
 @experiment(room="furnished", views=17_000)
@@ -51,8 +51,8 @@ def imagination(conditions: Conditions) -> Result:
         "mean view": (np.broadcast_to(np.rint(seen.mean(axis=0)).astype(np.uint8), seen.shape), 0.0),
         "nearest by true pose": (dream.places.views[near], 0.0),
     }
-    dream.at(percept.position[:1], percept.phase[:1], method="blend")  # compiled, and places perceived
     for method in METHODS:
+        dream.at(percept.position[:1], percept.phase[:1], method=method)  # compiled, and learnt
         started = time.process_time()
         made = dream.at(percept.position, percept.phase, method=method)
         dreams[method] = made.views, 1000 * (time.process_time() - started) / len(seen)
@@ -126,6 +126,7 @@ def _figures(
     return {
         "psnr_median_db": float(warp["psnr_db"].median()),
         "psnr_p05_db": float(warp["psnr_db"].quantile(0.05)),
+        "decoder_psnr_db": float(table.loc[table["method"] == "decoder", "psnr_db"].median()),
         "ssim_mean": float(warp["ssim"].mean()),
         "dream_position_median_m": float(warp["position_m"].median()),
         "dream_heading_median_deg": float(warp["heading_deg"].median()),

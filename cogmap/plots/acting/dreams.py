@@ -35,6 +35,7 @@ GAIN = 4
 LINES = {
     "mean view": SOFT,
     "nearest by true pose": INK,
+    "decoder": "#7c6bb0",
     "turned": "#d99a2b",
     "blend": "#5a9e6f",
     "warp": GOOD,
