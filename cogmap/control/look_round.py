@@ -1,4 +1,4 @@
-"""Looking round: turning one's head a little until it is clear which of the places that look alike this is."""
+"""Looking round: turning the head a little until it is clear which of places that look alike this is."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from cogmap.errors import CogmapError
 from cogmap.features.image_codes import image_codes
 from cogmap.navigation.hypotheses import Hypotheses, SceneMemory
 
-STANDS = 5.0
+STANDS = 10.0
 """Log-likelihood ratio to every hypothesis of elsewhere from which on one stands."""
-UNCLEAR = "places that are apart look alike from here, as far as the head turned; go elsewhere and look again"
+UNCLEAR = "places that are apart look alike from here as far as the head turned; look from elsewhere"
 
 
 class LookRound:
-    """A policy (`arena.Policy`) that turns its head until one hypothesis about where it is stands, or gives up.
+    """A policy (`arena.Policy`) that turns its head until one hypothesis of where it is stands, or gives up.
 
     It turns to one side, look by look, then to the other. Then `resolved_` says whether one stands; where
     none does what looks alike is alike, as far as it may turn, and the most likely is a guess.
@@ -47,6 +47,7 @@ class LookRound:
         self._turns = [turn] * looks + [back] + [-turn] * (looks - 1)
         self._memory = memory
         self._hypotheses: list[Hypotheses] = []
+        self._going = np.zeros(0, bool)
 
     def __call__(self, sensed: Sensed) -> Float[np.ndarray, "2"] | Float[np.ndarray, "explorers 2"] | None:
         """Weigh what is seen, and turn on where it is not clear yet."""

@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_array, check_choice
+from cogmap.inputs import check_array
 from cogmap.map.activity import Activity
 from cogmap.map.storage import read_state, write_state
 
@@ -34,8 +34,9 @@ class MotorModel:
     for position x, heading θ and command u; M₁ is what comes late, and A what goes on by itself: with it, of
     second order, the model holds for bodies with mass and friction, whatever these and the gain of commands
     are; without, A is 0. All is found by least squares in which steps that a wall or a slip spoilt count
-    less (Geman–McClure weights), kept as sums, so that models merge and learn on. What a command does is not known
-    before: neither which number turns and which goes, nor its sign or gain, nor whether the map is mirrored.
+    less (Geman–McClure weights), kept as sums, so that models merge and learn on. What a command does is not
+    known before: neither which number turns and which goes, nor its sign or gain, nor whether the map is
+    mirrored.
 
     Parameters
     ----------
@@ -59,7 +60,8 @@ class MotorModel:
     """
 
     def __init__(self, order: Literal[1, 2] = 1) -> None:
-        check_choice("order", order, (1, 2))
+        if order not in {1, 2}:
+            raise CogmapError(f"a motor model is of order 1 or 2, not {order}")
         self.order = order
         causes = 4 if order == 1 else 7
         self._gram, self._cross = np.zeros((causes, causes)), np.zeros((causes, 3))

@@ -1,4 +1,4 @@
-"""Hypotheses about where a view was taken, where places look alike: Markov localisation on remembered views."""
+"""Hypotheses about where a view was taken where places look alike: Markov localisation on a memory."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SAMPLE = 400
 
 @dataclass(eq=False)
 class SceneMemory:
-    r"""Remembers views and smells of a walk, so that views that look alike are known apart by where they smelt.
+    """Remembers views and smells of a walk, so that views that look alike are told apart by smell.
 
     A place is told by what was smelt there, and a direction by how that changed as the walk went on, because
     a body goes where it looks. Neither needs a pose.
@@ -69,7 +69,7 @@ class SceneMemory:
     @cached_property
     def courses(self) -> Float[np.ndarray, "views odorants"]:
         """How smell changes along the walk about each view."""
-        return self._means(1, 1 + BESIDE) - self._means(-BESIDE, 0)
+        return np.asarray(self._means(1, 1 + BESIDE) - self._means(-BESIDE, 0))
 
     @cached_property
     def spot(self) -> float:
@@ -78,7 +78,7 @@ class SceneMemory:
 
     @cached_property
     def usual(self) -> float:
-        """How unlike a view is at most (95 %) to the most similar one of its place and direction, but of later."""
+        """How unlike a view is at most (95 %) to the most similar other of its place and direction."""
         told = []
         for view in np.unique(np.linspace(0, len(self.known) - 1, SAMPLE).astype(int)):
             there = self.around(self.places[view], self.courses[view])
@@ -178,4 +178,4 @@ class Hypotheses:
         near = np.linalg.norm(self._places - self._places[best], axis=1) < APART * self._memory.spot
         near &= self._courses @ self._courses[best] > 0
         near[best] = True
-        return ~near
+        return np.asarray(~near)

@@ -9,7 +9,6 @@ from cogmap import CognitiveMap
 from cogmap.control import MotorModel
 from cogmap.experiments.acting.travels import babble
 from cogmap.features import vocabulary
-from cogmap.map import pose_graph
 
 VIEWS, CHARTS = 5000, 1000
 
@@ -57,10 +56,7 @@ def refined(
         walk = explore(room, Brownian(), camera, views=3000, seed=0, out=folder / "refined.zarr")[:]
         if not (folder / "refined").exists():
             grown = CognitiveMap(charts=600, components=40).fit(walk.views, walk.odours)
-            with pytest.MonkeyPatch.context() as patch:
-                patch.setattr(pose_graph, "MOST_ITERATIONS", 60)
-                grown.refine(walk.views)
-            grown.save(folder / "refined")
+            grown.refine(walk.views).save(folder / "refined")
         cmap = CognitiveMap.load(folder / "refined")
     return Refined(room, walk, cmap, babble(room, camera, cmap, Disc(), seed=0))
 

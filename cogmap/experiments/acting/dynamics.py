@@ -112,7 +112,7 @@ def dynamics(conditions: Conditions) -> Result:
         for name, (motor, percept, eye) in models.items():
             images = eye.render(room, goals, rng=rng)
             go = Reaching(percept, ways.get(name, ways[""]), Steering(motor), images)
-            stops[name].append(_stop(room, go, eye, starts, goals, body, seed))
+            stops[name].append(_stop(room, go, eye, starts, goals, body=body, seed=seed))
         foretold.append(_foretell(room, camera, dream, {"": second, "first_order_": first}, stops[""][-1]))
     tables = {
         name: pd.concat([each.table.assign(body=k) for k, each in enumerate(found)], ignore_index=True)
@@ -180,7 +180,8 @@ def draw_body(rng: np.random.Generator) -> HeavyDisc:
 
 def _babble(room: Arena, eye: Any, body: HeavyDisc, seed: int) -> Recording:
     """Push at random for a while, beginning where there is most room."""
-    x, y = shapely.maximum_inscribed_circle(free_space(room, body)).coords[0]
+    widest = np.asarray(shapely.maximum_inscribed_circle([free_space(room, body)]))[0]
+    x, y = widest.coords[0]
     views = round(BABBLED / DT) + 1
     return explore(
         room, Babble(dt=DT, start=(x, y, 0.0)), eye, body=body, views=views, seed=seed + BABBLING_SEED
@@ -215,6 +216,7 @@ def _stop(
     eye: Any,
     starts: Float[np.ndarray, "journeys 3"],
     goals: Float[np.ndarray, "journeys 3"],
+    *,
     body: HeavyDisc,
     seed: int,
 ) -> _Stops:

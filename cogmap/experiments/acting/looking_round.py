@@ -1,4 +1,4 @@
-"""Looking round: where places look alike, turning one's head just a little tells them apart, or never will."""
+"""Looking round: turning one's head just a little tells apart places that look alike, or never will."""
 
 from __future__ import annotations
 
@@ -38,11 +38,11 @@ def looking_round(conditions: Conditions, *, queries: int = 500) -> Result:
     An eye of 90 degrees sees no more than a part of a white room, of which one wall may be blue. The animal
     remembers views and smells of a walk; then it is put somewhere and looks, without smelling. It is right
     when the view that it takes this for was taken nearer to where it is than to the opposite pose: before
-    turning, and after turns of 6 degrees, up to 30 to either side, whether it says that it knows (`resolved`) or not.
-    In the white room nothing could tell, and it must not say that it knows.
+    turning, and after turns of 6 degrees, up to 30 to either side, whether it says that it knows
+    (`resolved`) or not. In the white room nothing could tell, and it must not say that it knows.
     """
     looked = {name: _look(conditions, Arena.load(room), queries) for name, room in ROOMS.items()}
-    metrics = {}
+    metrics: dict[str, float] = {}
     for name, (table, *_) in looked.items():
         known = table["resolved"]
         metrics |= {

@@ -177,7 +177,7 @@ def _catchments(
     for goal, image in zip(goals, images, strict=True):
         difference, ended = (np.full(free.shape, np.nan) for _ in range(2))
         difference[free] = rotational_difference(seen, np.broadcast_to(image, seen.shape)).rms
-        column, row = np.floor((goal[:2] - [x0, y0]) / GRID).astype(int)
+        column, row = np.floor((goal[:2] - [x0, y0]) / GRID).astype(int).tolist()
         go = reacher.towards(np.broadcast_to(image, seen.shape))
         gone = travel(room, go, camera, starts, body=body, seed=conditions.seed)
         ended[free] = np.linalg.norm(gone.poses[-1, :, :2] - goal[:2], axis=1)

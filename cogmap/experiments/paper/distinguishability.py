@@ -74,9 +74,9 @@ def _look(conditions: Conditions, room: Arena, queries: int) -> _Seen:
     train, test = retina_codes(np.asarray(walk.views), np.asarray(fresh.views), conditions.seed)
     nearest = walk.require("poses")[nearest_points(train, 1, queries=test).indices[:, 0]]
     poses = fresh.require("poses")
-    opposite = opposite(room, poses)
-    confused = pose_distances(nearest, opposite) < pose_distances(nearest, poses)
-    first = np.stack([poses[0], opposite[0]])
+    across = opposite(room, poses)
+    confused = pose_distances(nearest, across) < pose_distances(nearest, poses)
+    first = np.stack([poses[0], across[0]])
     return _Seen(
         nearest=pd.DataFrame(
             {**pose_columns(poses), **pose_columns(nearest, "nearest_"), "confused": confused}

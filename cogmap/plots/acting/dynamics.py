@@ -36,7 +36,7 @@ def plot_stops(arena: Arena, stops: list[_Stops], tables: dict[str, pd.DataFrame
         `position_error_m` and `stopped` of every journey, by who foretells.
     """
     figure = new_figure(12.0, 5.6)
-    left, right = figure.subfigures(1, 2, width_ratios=[1.3, 1])
+    left, right = figure.subfigures(1, 2, width_ratios=[1.3, 1], squeeze=False).flat
     plan = left.subplots()
     tidy_room(plan, title="from full speed (thin: run-up) to a stop at the pose of an image (arrow)")
     draw_surfaces(plan, arena)
@@ -44,13 +44,13 @@ def plot_stops(arena: Arena, stops: list[_Stops], tables: dict[str, pd.DataFrame
         text.set_visible(False)
     speeds, nearness = right.subplots(2, 1)
     for number, (gone, goals, run_up, body) in enumerate(stops):
-        colour = HUES(number / len(stops))
+        hue = HUES(number / len(stops))
         ways = gone.poses[:, :SHOWN, :2].transpose(1, 0, 2)
         for part, width in ((ways[:, : run_up + 1], 0.5), (ways[:, run_up:], 1.8)):
-            plan.add_collection(LineCollection(list(part), colors=[colour], linewidths=width, zorder=6))
-        plan.plot(*ways[:, run_up].T, "o", color=colour, markersize=4, zorder=7)
-        draw_arrows(plan, goals[:SHOWN], 0.2, color=colour, width=0.006, zorder=8)
-        _draw_speed(speeds, gone, run_up, body, colour)
+            plan.add_collection(LineCollection(list(part), colors=[hue], linewidths=width, zorder=6))
+        plan.plot(*ways[:, run_up].T, "o", color=hue, markersize=4, zorder=7)
+        draw_arrows(plan, goals[:SHOWN], 0.2, color=hue, width=0.006, zorder=8)
+        _draw_speed(speeds, gone, run_up, body, hue)
     frame_room(plan, arena.walkable.bounds, 0.15)
     tidy(speeds, x="time since the run-up ended (s)", y="speed (m/s)", title="slowing down to a stop")
     speeds.axvline(0, color=SOFT, linewidth=0.8, linestyle=":")

@@ -1,4 +1,4 @@
-"""Looking round: what is taken for the right place before and after, and looks of one beside what it remembers."""
+"""Looking round: who is right about the place before and after, and looks beside what is remembered."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TITLES = ("the first look", "what it takes it for", "the last look", "what it ta
 def plot_looking_round(
     looked: dict[str, tuple[pd.DataFrame, UInt8[np.ndarray, "4 height width 3"]]],
 ) -> Figure:
-    """Draw, for each room, where views were taken for the right place (blue) or the opposite (red), and looks.
+    """Draw, for each room, where views were taken for the right place (blue) or not (red), and looks.
 
     Where it says that it knows strokes are bold.
 

@@ -38,6 +38,6 @@ def plot_reached(tables: Mapping[str, pd.DataFrame]) -> Figure:
             width = 2.2 if name == next(iter(tables)) else 1.3
             axes.step(sizes, share, style, where="post", color=colour, linewidth=width, label=name)
         axes.set(xscale="log", ylim=(0, 102))
-        plain_ticks(axes.xaxis, [0.01, 0.1, 1, 10, 100])
+        plain_ticks(axes.xaxis, [0.01, 0.1, 1.0, 10.0, 100.0])
     tidy_legend(right, loc="beside")
     return figure

@@ -19,6 +19,7 @@ from cogmap.map.diagnosis import topology_verdict
 from neurons.circuit import Circuit
 from neurons.network import Network
 from neurons.stages import STAGES, Batch, StripStage, chosen, joined
+from tests.cogmap.conftest import Refined
 from tests.cogmap.shape.numbers import betti_of
 
 SHARED = 3000
@@ -382,3 +383,41 @@ def test_lazy_views_are_read_by_the_thread_that_asks(walk: Recording, cmap: Cogn
 
     np.testing.assert_array_equal(cmap.encode(Lazy()), cmap.encode(walk.views))
     assert readers == {threading.get_ident()}
+
+
+def test_a_refined_map_perceives_more_finely_and_is_saved_with_it(
+    refined: Refined, camera: Camera, tmp_path: Path
+) -> None:
+    cmap, fresh = refined.cmap, explore(refined.room, Brownian(), camera, views=200, seed=1000)
+    assert not cmap.refine_reason_
+    known, seen = cmap.perceive(refined.walk.views[::5]), cmap.perceive(fresh.views)
+    assert seen.position.dtype == seen.phase.dtype == seen.novelty.dtype == np.float32
+    fine, plain = (
+        score(told, fresh.poses, train=(before, refined.walk.poses[::5]))
+        for told, before in ((seen, known), (seen.plain, known.plain))
+    )
+    assert fine["metric_map_median_m"] < 0.3 * plain["metric_map_median_m"]
+    assert fine["heading_median_deg"] < plain["heading_median_deg"]
+    cmap.save(tmp_path / "map")
+    loaded = CognitiveMap.load(tmp_path / "map").perceive(fresh.views)
+    assert_same(loaded, seen)
+    np.testing.assert_array_equal(loaded.novelty, seen.novelty)
+    assert cmap.perceive(odours=fresh.odours).plain is None
+
+
+def test_what_cannot_be_refined_says_so_and_stays_as_it_was(
+    stroll: Recording, learnt: CognitiveMap, refined: Refined
+) -> None:
+    views = stroll.views[:100]
+    with pytest.warns(UntrustedMapWarning, match="places are not relaxed: "):
+        untrusted = copy.deepcopy(learnt).refine(views)
+    assert untrusted.refine_reason_ == (untrusted.reason_ or untrusted.metric_reason_)
+    assert untrusted.relaxed_places_ is None
+    few = copy.deepcopy(refined.cmap)
+    with pytest.warns(UntrustedMapWarning, match="places are not relaxed: there are 60 views"):
+        few.refine(refined.walk.views[:60])
+    assert "more than 60" in few.refine_reason_
+    seen = few.perceive(refined.walk.views[:50])
+    assert seen.plain is None
+    assert seen.novelty is None
+    assert_same(seen, refined.cmap.perceive(refined.walk.views[:50]).plain)

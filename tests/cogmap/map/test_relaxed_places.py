@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from threadpoolctl import threadpool_limits
 
 from arena import Arena, Brownian, Camera, Recording, explore
 from arena.angles import wrap_angle
 from cogmap import CogmapError
 from cogmap.map.relaxed_places import Located, RelaxedPlaces, _alike
+from cogmap.threads import one_thread
 
 CORNERS = ((-0.8, -0.6), (0.8, -0.6), (0.8, 0.6), (-0.8, 0.6))
 ROOM = Arena.load("furnished").model_copy(update={"platform": (CORNERS,)})
@@ -138,3 +140,12 @@ def test_views_that_a_turn_does_not_shift_are_refused(kind: str, walk: Recording
 def test_few_views_are_refused(walk: Recording) -> None:
     with pytest.raises(CogmapError, match="there are 60 views to relax places of; give more than 60"):
         RelaxedPlaces.learn(walk.views[:60], *recalled(walk.poses[:60]))
+
+
+def test_one_thread_or_two_relax_to_the_same_bits(walk: Recording) -> None:
+    learnt = []
+    for threads in (1, 2):
+        with threadpool_limits(threads), one_thread():
+            learnt.append(RelaxedPlaces.learn(walk.views[:200], *recalled(walk.poses[:200])).state())
+    for name, array in learnt[0].items():
+        np.testing.assert_array_equal(array, learnt[1][name])
