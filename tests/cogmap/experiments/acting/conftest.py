@@ -2,14 +2,14 @@ from dataclasses import replace
 
 import pytest
 
-from arena import Arena, Brownian, Camera, Recording, explore
+from arena import Arena, Brownian, Camera, explore
 from cogmap.experiments.acting.dreamer import Dreamer
 from cogmap.experiments.acting.surprise import with_a_box
 from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.trial import Trial
 from tests.cogmap.conftest import Refined
 
-REMEMBERED, FRESH = 600, 40
+REMEMBERED, FRESH = 1000, 30
 
 
 @pytest.fixture(scope="session")
@@ -19,21 +19,19 @@ def room(refined: Refined) -> Arena:
 
 
 @pytest.fixture(scope="session")
-def remembered(refined: Refined, room: Arena, camera: Camera) -> Recording:
-    """Part of the walk that the map was learnt from, as it looks with the box."""
+def small_dreamer(refined: Refined, room: Arena, camera: Camera) -> Dreamer:
+    """A small map, and part of the walk that it was learnt from, as it looks with the box."""
     walk = refined.walk[:REMEMBERED]
-    return replace(walk, views=camera.render(room, walk.require("poses")))
+    walk = replace(walk, views=camera.render(room, walk.require("poses")))
+    fresh = explore(room, Brownian(), camera, views=FRESH, seed=1)
+    trial = Trial(Conditions(room, REMEMBERED), walk, fresh)
+    trial.__dict__["cmap"] = refined.cmap
+    return Dreamer(trial)
 
 
 @pytest.fixture
-def dreamer(
-    refined: Refined, room: Arena, remembered: Recording, camera: Camera, monkeypatch: pytest.MonkeyPatch
-) -> Dreamer:
-    """What experiments on imagination are given: a small map, few views, a small eye."""
-    fresh = explore(room, Brownian(), camera, views=FRESH, seed=1)
-    trial = Trial(Conditions(room, REMEMBERED), remembered, fresh)
-    trial.__dict__["cmap"] = refined.cmap
-    dreamer = Dreamer(trial)
-    monkeypatch.setattr(Dreamer, "of", lambda _: dreamer)
+def dreamer(small_dreamer: Dreamer, camera: Camera, monkeypatch: pytest.MonkeyPatch) -> Dreamer:
+    """What experiments on imagination are given, and look through."""
+    monkeypatch.setattr(Dreamer, "of", lambda _: small_dreamer)
     monkeypatch.setattr(Camera, "panoramic", lambda *_, **__: camera)
-    return dreamer
+    return small_dreamer
