@@ -12,6 +12,8 @@ def test_dreams_are_measured_beside_what_is_seen(
 ) -> None:
     monkeypatch.setattr(imagination, "TARGETS", 10)
     monkeypatch.setattr(imagination, "WAYS", 1)
+    # few frames: four times as far from one to the next
+    monkeypatch.setitem(dreamer.imagination.__dict__, "pace", 4 * dreamer.imagination.pace)
     result = run_experiment("imagination", views=200, room=room)
     figures, table = result.metrics, result.tables["dreams"]
     medians = table.groupby("method")["psnr_db"].median()
