@@ -25,7 +25,7 @@ def test_a_chart_regresses_pixels_on_pose(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(module, "RIDGE", 0.0)
     rng = np.random.default_rng(0)
     views = rng.integers(0, 256, (30, *SHAPE), np.uint8)
-    poses = np.column_stack([rng.normal([40, -7], 1, (30, 2)), 3 + rng.normal(0, 0.1, 30)])
+    poses = np.column_stack([rng.normal([40, -7], 1, (30, 2)), 3.1 + rng.normal(0, 0.1, 30)])
     wrapped = poses - 2 * np.pi * np.array([0, 0, 1]) * (poses[:, 2:] > np.pi)
     decoder = blank()
     decoder._add(np.zeros((30, 1), np.float32), views, wrapped)
