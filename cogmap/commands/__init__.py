@@ -13,7 +13,7 @@ app = App(
 _COMMANDS = {
     "arena": "rooms:_arena",
     "demo": "results:_demo",
-    "dream": "dreams:_dream",
+    "dream": "acting:_dream",
     "experiment": "results:experiment_command",
     "explore": "rooms:_explore",
     "export": "maps:_export",

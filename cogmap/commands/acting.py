@@ -1,11 +1,12 @@
-"""Commands about what an explorer does with its map."""
+"""Commands about what an explorer does with its map: imagine and reach."""
 
 import sys
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import pandas as pd
+from cyclopts import Parameter
 
 from arena import Arena, Camera, Disc, Recording
 from arena.acting import Journeys
@@ -18,8 +19,46 @@ from cogmap.errors import CogmapError
 from cogmap.experiments.acting.travels import babble, draw_poses, travel
 from cogmap.experiments.poses import pose_columns
 from cogmap.experiments.result import Result
+from cogmap.imagination import Imagination
 from cogmap.map.cognitive_map import CognitiveMap
+from cogmap.pages.film import check_film, write_film
 from cogmap.plots import plot_journeys
+
+
+def _dream(
+    cmap: Path,
+    recording: Path,
+    /,
+    *,
+    start: Annotated[Path, Parameter(name="--from")],
+    goal: Annotated[Path, Parameter(name="--to")],
+    out: Path,
+    as_json: Json = False,
+) -> None:
+    """Imagine the way from one view to another, as a film.
+
+    The map's places are relaxed first, from the views of the recording, where they are not yet.
+
+    Example: `cogmap dream map walk.zarr --from here.png --to there.png --out film.mp4`.
+
+    Parameters
+    ----------
+    cmap
+        Folder that `cogmap learn` wrote.
+    recording
+        Whose views are remembered: those that the map was learnt from.
+    start, goal
+        Images of the first and the last view, of the size the map was learnt from.
+    out
+        Film to write, .mp4, or a folder for PNGs; it must not exist.
+    """
+    check_film(out)
+    grown, walk = CognitiveMap.load(cmap), Recording.open(recording).without_truth()
+    ends = [read_image(path, grown.view_shape_) for path in (start, goal)]
+    _refine(grown, walk)
+    dream = Imagination(grown, memory=walk.views).film(*ends)
+    write_film(dream.views, out)
+    tell({"film": str(out), "frames": len(dream), "spread": float(np.median(dream.spread))}, as_json=as_json)
 
 
 def _reach(
@@ -65,9 +104,7 @@ def _reach(
     if start is not None:
         pose = (start[0], start[1], float(np.deg2rad(start[2])))
         world.body.place(world.room, pose, np.random.default_rng(seed))
-    if grown.relaxed_places_ is None:
-        sys.stderr.write("cogmap: this map is not refined yet; its places are relaxed from the recording\n")
-        grown.refine(walk.views)
+    _refine(grown, walk)
     if grown.relaxed_places_ is None:
         raise CogmapError(f"this map's places are too coarse to act on: {grown.refine_reason_}")
     check_known(grown.perceive(image[None]))
@@ -87,6 +124,13 @@ def _reach(
         )
         result.write(folder)
     tell(result.metrics, as_json=as_json)
+
+
+def _refine(cmap: CognitiveMap, walk: Recording) -> None:
+    """Relax places where they are not yet, and say so: it takes a while."""
+    if cmap.relaxed_places_ is None:
+        sys.stderr.write("cogmap: this map is not refined yet; its places are relaxed from the recording\n")
+        cmap.refine(walk.views)
 
 
 class _World(NamedTuple):

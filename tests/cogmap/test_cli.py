@@ -307,6 +307,67 @@ def test_reach_refuses_bad_goals_before_anything_moves(
     refused(run("arena", "pillar", "--view", out), "--pose")
 
 
+def test_dream_films_the_way_from_one_view_to_another(
+    run, settled: Path, tmp_path: Path, refined: Refined, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    refined.walk[:300].save(tmp_path / "some.zarr")
+    for name, view in (("a", 10), ("b", 13)):
+        cv2.imwrite(str(tmp_path / f"{name}.png"), refined.walk.views[view][:, :, ::-1])
+    ends = ["--from", tmp_path / "a.png", "--to", tmp_path / "b.png"]
+    call = ["dream", settled / "map", tmp_path / "some.zarr", *ends, "--json"]
+    status, said, err = run(*call, "--out", tmp_path / "film.mp4")
+    assert (status, err) == (0, "")
+    film = cv2.VideoCapture(str(tmp_path / "film.mp4"))
+    found = json.loads(said)
+    assert found["frames"] == film.get(cv2.CAP_PROP_FRAME_COUNT) > 5
+    assert found["spread"] > 0
+    refused(run(*call, "--out", tmp_path / "film.mp4"), "exists already")
+    # a map that is not refined yet
+    load = CognitiveMap.load
+
+    def plain(path: Path) -> CognitiveMap:
+        cmap = load(path)
+        cmap.relaxed_places_ = None
+        return cmap
+
+    def refine(cmap: CognitiveMap, views: object) -> None:
+        assert np.array_equal(np.asarray(views), refined.walk.views[:300])
+        cmap.relaxed_places_ = refined.cmap.relaxed_places_
+
+    monkeypatch.setattr(CognitiveMap, "load", plain)
+    monkeypatch.setattr(CognitiveMap, "refine", refine)
+    status, _, err = run(*call, "--out", tmp_path / "film")
+    assert status == 0
+    assert "not refined yet" in err
+    assert len(list((tmp_path / "film").glob("*.png"))) == found["frames"]
+
+
+def test_dream_refuses_bad_ends_and_leaves_nothing(
+    run, settled: Path, tmp_path: Path, refined: Refined
+) -> None:
+    away = Camera.panoramic(90, 15).render(Arena.load("two_rooms"), np.array([[1.0, 0.3, 0.5]]))[0]
+    images = {
+        "here": refined.walk.views[10],
+        "black": np.zeros((15, 90, 3), np.uint8),
+        "large": np.zeros((60, 360, 3), np.uint8),
+        "away": away,
+    }
+    for name, image in images.items():
+        cv2.imwrite(str(tmp_path / f"{name}.png"), image[:, :, ::-1])
+    out = tmp_path / "film.mp4"
+    for goal, words in (
+        ("black", ["view 1 is of one colour"]),
+        ("large", ["60×360", "15×90"]),
+        ("away", ["another place"]),
+        ("none", ["no image"]),
+    ):
+        ends = ["--from", tmp_path / "here.png", "--to", tmp_path / f"{goal}.png", "--out", out]
+        refused(run("dream", settled / "map", settled / "walk.zarr", *ends), *words)
+    ends = ["--from", tmp_path / "here.png", "--to", tmp_path / "here.png"]
+    refused(run("dream", settled / "map", settled / "walk.zarr", *ends, "--out", tmp_path / "x.gif"), ".gif")
+    assert {file.stem for file in tmp_path.iterdir()} == set(images)
+
+
 def test_export_writes_nwb(run, folder: Path, tmp_path: Path) -> None:
     out = tmp_path / "walk.nwb"
     status, said, err = run("export", folder / "walk.zarr", folder / "map", "--out", out, "--json")
@@ -319,7 +380,18 @@ def test_export_writes_nwb(run, folder: Path, tmp_path: Path) -> None:
 def test_help_gives_examples(run) -> None:
     said = run("experiment", "--help")[1]
     assert all(name in said for name in experiments())
-    for command in ("demo", "experiment", "arena", "explore", "learn", "score", "report", "export", "reach"):
+    for command in (
+        "demo",
+        "experiment",
+        "arena",
+        "explore",
+        "learn",
+        "score",
+        "report",
+        "export",
+        "reach",
+        "dream",
+    ):
         status, out, _ = run(command, "--help")
         assert status == 0
         assert f"cogmap {command} " in " ".join(out.split())

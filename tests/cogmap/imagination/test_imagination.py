@@ -103,25 +103,25 @@ def test_a_moved_box_surprises_where_it_stood_or_stands(
     monkeypatch.setattr("cogmap.imagination.places.VISIT", 0)
     # a square metre was walked, and the box stood 1.7 m beside it
     monkeypatch.setattr("cogmap.imagination.surprise.BEYOND", 2.0)
-    monkeypatch.setattr("cogmap.imagination.imagination.CALIBRATED", 12)
+    monkeypatch.setattr("cogmap.imagination.imagination.CALIBRATED", 6)
     boxes = [box.model_dump() for box in room.boxes]
     gone = room.model_copy(update={"boxes": boxes[:1] + boxes[2:]})
     views, poses = remembered
-    changed = camera.render(gone, poses[-10:])
+    changed = camera.render(gone, poses[-6:])
     cmap = copy(dream.cmap)
-    cmap.poses = {**cmap.poses, **{v.tobytes(): p for v, p in zip(changed, poses[-10:], strict=True)}}
+    cmap.poses = {**cmap.poses, **{v.tobytes(): p for v, p in zip(changed, poses[-6:], strict=True)}}
     waking = Imagination(cmap, memory=dream.memory)
     surprised = waking.surprise(changed)
     assert surprised.alarms.mean() > 0.5
-    assert not waking.surprise(views[-10:]).alarms.any()
+    assert not waking.surprise(views[-6:]).alarms.any()
     assert (surprised.shares < 0.1).all()
     box = np.array([[*boxes[1]["center"], 0.0]])
     where, _ = dream.cmap.framed(box)
-    # ten views from one square metre tell a direction well, and a distance badly
+    # six views from one square metre tell a direction well, and a distance badly
     seen, true = (complex(*place) for place in (surprised.plan().changed, where[0]))
     assert abs(np.angle(seen / true)) < 0.1
     with pytest.raises(CogmapError, match="nothing surprises"):
-        waking.surprise(views[-10:]).plan()
+        waking.surprise(views[-6:]).plan()
 
 
 def test_recognising_corrects_a_wrong_percept(
@@ -129,10 +129,10 @@ def test_recognising_corrects_a_wrong_percept(
 ) -> None:
     views, poses = remembered
     off = copy(dream.cmap)
-    wrong = poses[-10:] + np.array([0.03, -0.02, 0.01])
-    off.poses = {**off.poses, **{v.tobytes(): p for v, p in zip(views[-10:], wrong, strict=True)}}
-    found = Imagination(off, memory=dream.memory).recognise(views[-10:])
-    right, phase = dream.perceive(views[-10:])
+    wrong = poses[-5:] + np.array([0.03, -0.02, 0.01])
+    off.poses = {**off.poses, **{v.tobytes(): p for v, p in zip(views[-5:], wrong, strict=True)}}
+    found = Imagination(off, memory=dream.memory).recognise(views[-5:])
+    right, phase = dream.perceive(views[-5:])
     assert np.median(np.linalg.norm(found[:, :2] - right, axis=1)) < 0.015
     assert np.median(np.abs(found[:, 2] - phase)) < 0.004
 
