@@ -63,13 +63,16 @@ def test_explore_learn_score(run, folder: Path, tmp_path: Path) -> None:
                    "--out", tmp_path / "fresh.zarr", "--json")  # fmt: skip
     assert explored[0] == 0
     assert json.loads(explored[1])["views"] == 400
-    assert run("learn", folder / "walk.zarr", "--out", tmp_path / "map", "--charts", 1100)[0] == 0
+    learnt = run("learn", folder / "walk.zarr", "--out", tmp_path / "map", "--charts", 1100, "--refine")
+    assert learnt[0] == 0
     assert CognitiveMap.load(tmp_path / "map").charts == 1100
     status, out, err = run(
         "score", tmp_path / "map", tmp_path / "fresh.zarr", "--train", folder / "walk.zarr", "--json"
     )
     assert status == 0, err
-    assert json.loads(out)["heading_resultant"] > 0.95
+    found = json.loads(out)
+    assert found["heading_resultant"] > 0.95
+    assert found["metric_map_median_m"] < 0.5 * found["plain_metric_map_median_m"]
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "6_sweeping_cell_statistics": {"VIEWS": 1500, "NOISE": [0.1], "SEEDS": [0]},
     "7_the_homology_of_emergent_maps": {"VIEWS": 3000, "CHARTS": 600, "LANDMARKS": (100, 50)},
     "8_your_own_arena": {"MINUTES": 5, "CHARTS": 250},
-    "9_imagine_expect_reach": {"VIEWS": 4500, "CHARTS": 900},
+    "9_imagine_expect_reach": {"VIEWS": 3000, "CHARTS": 600, "WIDTH": 90},
 }
 
 
