@@ -36,9 +36,10 @@ def imagination(conditions: Conditions) -> Result:
 
     `psnr_*`, `ssim_mean` and `dream_*` are of "warp" in the map's frame: how like the dream is to the view,
     and how far apart the map places both. `outside_*` asks for the true pose through one similarity, fitted
-    on the training views. Peers in the table are the mean view and the nearest by true pose. `replay_r2` is
-    the share of the dreamt ways that is decoded from the place cells which fire in the dream (4 nearest
-    neighbours among remembered views). Times are of one core.
+    on the training views; `decoder_psnr_db` is of what the charts alone decode. Peers in the table are the
+    mean view and the nearest by true pose. `replay_r2` is the share of the dreamt ways that is decoded from
+    the place cells which fire in the dream (4 nearest neighbours among remembered views). Times are of one
+    core.
     """
     dreamer = Dreamer.of(conditions)
     trial, dream = dreamer.trial, dreamer.imagination
