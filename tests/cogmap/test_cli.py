@@ -72,6 +72,7 @@ def test_explore_learn_score(run, folder: Path, tmp_path: Path) -> None:
     assert json.loads(out)["heading_resultant"] > 0.95
 
 
+@pytest.mark.filterwarnings("always::cogmap.errors.UntrustedMapWarning")
 def test_learn_refines_or_says_why_not(run, folder: Path, tmp_path: Path) -> None:
     walk = Recording.open(folder / "walk.zarr")
     walk[np.arange(len(walk)) < 300].save(tmp_path / "few.zarr")
