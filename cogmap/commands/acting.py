@@ -14,13 +14,13 @@ from arena.bodies.catalogue import bodies
 from cogmap.atomic import result_folder
 from cogmap.commands.common import Json, Seed, read_image, tell
 from cogmap.control import MotorModel, Outcome, Reacher, Reaching
-from cogmap.control.reaching import check_known
 from cogmap.errors import CogmapError
 from cogmap.experiments.acting.travels import babble, draw_poses, travel
 from cogmap.experiments.poses import pose_columns
 from cogmap.experiments.result import Result
 from cogmap.imagination import Imagination
 from cogmap.map.cognitive_map import CognitiveMap
+from cogmap.map.novelty import check_known
 from cogmap.pages.film import check_film, write_film
 from cogmap.plots import plot_journeys
 
@@ -107,7 +107,7 @@ def _reach(
     _refine(grown, walk)
     if grown.relaxed_places_ is None:
         raise CogmapError(f"this map's places are too coarse to act on: {grown.refine_reason_}")
-    check_known(grown.perceive(image[None]))
+    check_known(grown.perceive(image[None]), "goal")
     with result_folder(out) as folder:
         if known is None:
             known = babble(world.room, world.camera, grown, world.body, seed)

@@ -13,11 +13,9 @@ from cogmap.control.motor_model import body_motion, carried
 from cogmap.control.percept import Percept, Views
 from cogmap.control.steering import Steering
 from cogmap.errors import CogmapError
-from cogmap.map.activity import Activity
+from cogmap.map.novelty import KNOWN, check_known
 from cogmap.navigation.place_graph import PlaceGraph
 
-KNOWN = 4.0
-"""Novelty up to which a view is of a place that is remembered."""
 NEAR = 2.0
 """Decisions' ways from the goal within which the body may go backwards."""
 ALIGNED = 0.6
@@ -56,22 +54,6 @@ REASONS = {
 }
 
 
-def check_known(seen: Activity) -> None:
-    """Refuse views of nowhere that is remembered.
-
-    Raises
-    ------
-    CogmapError
-        Which of them looks least like anything, and how unlike it is.
-    """
-    novelty = np.asarray(seen.novelty)
-    if novelty.max() > KNOWN:
-        raise CogmapError(
-            f"goal {novelty.argmax()} is nothing that this map remembers: what looks most like it is "
-            f"{novelty.max():.1f} times as unlike as usual; give a view from the room that was learnt"
-        )
-
-
 class Reaching:
     """A policy (`arena.Policy`) that goes where images were taken; `Reacher.towards` makes it.
 
@@ -91,7 +73,7 @@ class Reaching:
         self, percept: Percept, ways: PlaceGraph, steering: Steering, goals: Views, *, single: bool = False
     ) -> None:
         count, there = len(goals), percept.perceive(goals)
-        check_known(there)
+        check_known(there, "goal")
         self._percept, self._ways, self._steering, self._single = percept, ways, steering, single
         self._goals, self._goal = goals, there.position.astype(np.float64)
         self._last, self._before = np.zeros((count, 2)), np.zeros((count, 2))

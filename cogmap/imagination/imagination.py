@@ -24,6 +24,7 @@ from cogmap.inputs import check_array, check_choice, check_views, checked_count
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.even_memory import EvenMemory
+from cogmap.map.novelty import check_known
 from cogmap.navigation.place_graph import PlaceGraph
 from cogmap.threads import in_order, one_thread
 
@@ -43,8 +44,6 @@ Method = Literal["decoder", Turned]
 STRAIGHT = 0.2
 """Turn between views (rad) up to which a body counts as going straight on."""
 
-UNKNOWN = 4.0
-"""Novelty beyond which a view is of another place."""
 CALIBRATED = 500
 """Remembered views that tell what is usual."""
 
@@ -301,12 +300,7 @@ class Imagination:
             if not np.ptp(view.reshape(-1, 3), axis=0).any():
                 raise CogmapError(f"view {index} is of one colour and shows no place; give another")
         activity = self._perceived(views)
-        if activity.novelty is not None and activity.novelty.max() > UNKNOWN:
-            index = int(activity.novelty.argmax())
-            raise CogmapError(
-                f"view {index} is {activity.novelty[index]:.1f} times as far from what is remembered as is "
-                "usual: it is of another place; give one that was explored"
-            )
+        check_known(activity, "view")
         return activity.position.astype(np.float64), activity.phase.astype(np.float64)
 
     def paint(

@@ -370,7 +370,7 @@ def test_dream_refuses_bad_ends_and_leaves_nothing(
     for goal, words in (
         ("black", ["view 1 is of one colour"]),
         ("large", ["60×360", "15×90"]),
-        ("away", ["another place"]),
+        ("away", ["nothing that this map remembers"]),
         ("none", ["no image"]),
     ):
         ends = ["--from", tmp_path / "here.png", "--to", tmp_path / f"{goal}.png", "--out", out]

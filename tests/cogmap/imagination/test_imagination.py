@@ -161,7 +161,7 @@ def test_bad_input_is_refused_in_one_sentence(dream: Imagination, asked: np.ndar
     with pytest.raises(CogmapError, match="not finite"):
         again.at(np.full((2, 2), np.nan), 0.0)
     cmap.novelty = 9.0
-    with pytest.raises(CogmapError, match=r"9\.0 times as far"):
+    with pytest.raises(CogmapError, match=r"9\.0 times as unlike"):
         again.film(asked[0], asked[1])
     cmap.novelty, cmap.compass = 1.0, False
     with pytest.raises(CogmapError, match="no compass"):
