@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
+from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -28,6 +29,8 @@ PATIENCE = 10
 """Decisions without the motion that was commanded, or in unknown places, after which it gives up."""
 TRUSTED = 0.5
 """How much of what was foretold of its motion what is seen of it corrects."""
+STALLED = 50
+"""Decisions without getting nearer along the way after which it gives up: backing off, too, is motion."""
 HELD = 3
 """Of these, after each of which it backs off."""
 
@@ -81,7 +84,11 @@ class Reaching:
         self._motion = np.full((count, 3), np.nan)
         self._ahead: list[list[Float[np.ndarray, "2"]]] = [[] for _ in range(count)]
         self._tries, self._at_goal, self._held, self._unknown = (np.zeros(count, int) for _ in range(4))
-        self._backing = np.zeros(count, int)
+        self._backing, self._stale, self._left = (
+            np.zeros(count, int),
+            np.zeros(count, int),
+            np.full(count, np.inf),
+        )
         self._docked, self._backwards = np.zeros(count, bool), np.zeros(count, bool)
         self.outcomes_ = np.full(count, Outcome.ON_THE_WAY, int)
 
@@ -172,6 +179,12 @@ class Reaching:
         ease = 2.0 ** (self._tries[live] / max(EASE, steering.coasting))
         docked = last & (far < steering.close * ease * np.where(self._docked[live], 2, 1))
         self._docked[live] = docked
+        left = far + [_length(self._ahead[explorer]) for explorer in live.tolist()]
+        nearer = docked | (left < self._left[live] - steering.close)
+        self._left[live] = np.where(nearer, left, self._left[live])
+        self._stale[live] = np.where(nearer, 0, self._stale[live] + 1)
+        stalled = self._stale[live] >= STALLED + 4 * steering.coasting
+        self.outcomes_[live[stalled]] = Outcome.STUCK
         turn = bearing
         if docked.any():
             here = self._percept.turns(views[docked], self._goals[live[docked]])
@@ -198,3 +211,8 @@ class Reaching:
             self._plan(explorer)
             ahead = self._ahead[explorer]
         return ahead[0]
+
+
+def _length(way: list[Float[np.ndarray, "2"]]) -> float:
+    """Measure a way along its corners."""
+    return float(sum(np.linalg.norm(b - a) for a, b in pairwise(way)))

@@ -106,9 +106,10 @@ def test_a_goal_in_a_separate_part_is_unreachable_and_nobody_moves(motor) -> Non
     assert "explore between" in go.reasons_[0]
 
 
-def test_what_is_shut_in_says_that_it_is_stuck(motor, ways: PlaceGraph) -> None:
+@pytest.mark.parametrize("play", [0.012, 0.03])
+def test_what_is_shut_in_says_that_it_is_stuck(motor, ways: PlaceGraph, play: float) -> None:
     start = np.array([[-1.5, -1.0, 0.0]])
-    cell = Point(-1.5, -1.0).buffer(BODY.radius + 0.012, quad_segs=4)
+    cell = Point(-1.5, -1.0).buffer(BODY.radius + play, quad_segs=4)
     shut = ROOM.model_copy(update={"platform": (tuple(cell.exterior.coords[:-1]),)})
     go = policy(motor, ways, np.array([[1.6, 1.0, 0.0]]))
     went = gone(go, start, room=shut)
