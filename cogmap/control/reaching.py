@@ -26,13 +26,13 @@ EASE = 8
 SETTLED = 2
 """Decisions at the goal after which it stops."""
 PATIENCE = 10
-"""Decisions without the motion that was commanded, or in unknown places, after which it gives up."""
+"""Decisions in unknown places after which it gives up."""
 TRUSTED = 0.5
 """How much of what was foretold of its motion what is seen of it corrects."""
 STALLED = 50
 """Decisions without getting nearer along the way after which it gives up: backing off, too, is motion."""
 HELD = 3
-"""Of these, after each of which it backs off."""
+"""Decisions without the motion that was commanded after each of which it backs off."""
 
 
 class Outcome(IntEnum):
@@ -141,7 +141,6 @@ class Reaching:
         self._motion[live] = np.where(unmoved, moved, expected + TRUSTED * (moved - expected))
         self._position[live], self._phase[live] = position, phase
         self.outcomes_[live[self._unknown[live] >= PATIENCE]] = Outcome.LOST
-        self.outcomes_[live[self._held[live] >= PATIENCE]] = Outcome.STUCK
         for explorer in live[~began].tolist():
             self._plan(explorer)
 

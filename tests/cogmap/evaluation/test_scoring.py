@@ -190,3 +190,20 @@ def test_cells_that_have_been_measured_are_not_measured_again(
     none = truth.measure(0 * activity.place), truth.measure(0 * activity.heading)
     record = score(activity, poses, train=train, cells=none)
     assert record["place_cells_passing"] == record["place_coverage"] == record["heading_cells_passing"] == 0
+
+
+def test_a_refined_map_is_scored_beside_its_charts(
+    train: tuple[Activity, np.ndarray], poses: np.ndarray
+) -> None:
+    (plain_train, poses_train), plain = train, ideal(poses, seed=1)
+    exact = {"phase": poses[:, 2], "position": poses[:, :2]}
+    exact_train = {"phase": poses_train[:, 2], "position": poses_train[:, :2]}
+    refined = replace(plain, **exact, plain=plain)
+    record = score(
+        refined, poses, train=(replace(plain_train, **exact_train, plain=plain_train), poses_train)
+    )
+    alone = score(plain, poses, train=train)
+    for name in ("heading_median_deg", "heading_p95_deg", "metric_map_r2", "metric_map_median_m"):
+        assert record[f"plain_{name}"] == alone[name]
+    assert record["heading_median_deg"] < 1e-6
+    assert record["metric_map_median_m"] < 1e-6
