@@ -15,8 +15,8 @@ COLUMNS = 2 * (FREQUENCIES - 1)
 """At which a panorama is compared with another."""
 BLOCK = 2048
 """Pairs compared at a time."""
-OUTLIER = 0.03
-"""Error of a turn (rad) from which on it counts less."""
+OUTLIERS = (np.inf, 0.3, 0.1, 0.03)
+"""Error of a turn (rad) from which on it counts less, round by round."""
 
 _f = np.arange(FREQUENCIES, dtype=np.float32)
 
@@ -115,8 +115,9 @@ def synchronise_headings(
 
     .. math:: \sum_{ij} \rho\bigl(\Delta_{ij} - (\theta_i - \theta_j)\bigr) / \ell_{ij}^2
 
-    with a loss ρ that counts outliers less. Each connected piece has a north of its own; the heading of a
-    view without edges is 0.
+    with a loss ρ that counts outliers less, and at first none: around a box turns add up to some degrees too
+    many, which all edges of the loop are to share, and a loss that is robust from the start leaves in one seam.
+    Each connected piece has a north of its own; the heading of a view without edges is 0.
 
     Parameters
     ----------
@@ -126,6 +127,10 @@ def synchronise_headings(
         Its edges (i, j), each once.
     turned
         Δ, rad.
+
+    References
+    ----------
+    Blake & Zisserman (1987), Visual reconstruction: graduated non-convexity.
     """
     views, (rows, columns) = graph.shape[0], edges.T
     headings = np.zeros(views)
@@ -145,9 +150,9 @@ def synchronise_headings(
                 headings[view] = headings[before[view]] + step
     difference = edge_differences(columns, rows, views)
     trust = 1 / np.square(lengths + 0.1 * np.median(lengths))
-    for _ in range(4):
+    for outlier in OUTLIERS:
         left = wrap_angle(turned - difference @ headings)
-        weighted = difference.T @ sp.diags_array(trust / (1 + np.square(left / OUTLIER)))
+        weighted = difference.T @ sp.diags_array(trust / (1 + np.square(left / outlier)))
         matrix = sp.csr_array(weighted @ difference)
         scale = sp.diags_array(1 / np.maximum(matrix.diagonal(), 1e-300))
         headings += cg(matrix, weighted @ left, rtol=1e-5, M=scale, maxiter=1000)[0]

@@ -14,7 +14,7 @@ from cogmap.errors import CogmapError
 from cogmap.features.compass import misfit, synchronise_headings, turns
 from cogmap.features.strips import Strips, strips
 from cogmap.graph.knn import nearest_points
-from cogmap.graph.neighbour_graph import neighbour_graph
+from cogmap.graph.spots import spot_graph
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
 
@@ -44,7 +44,7 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
     turning
         τ: how much a turn by one rad counts, in standard deviations of z.
     neighbours
-        Views from near places that agree on north.
+        Near places that agree with each on north.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
             # in the order in which they are stored: products round otherwise in another
             self._axes = np.ascontiguousarray(axes.components_)
             self._mean, self._scale, self._grey = axes.mean_, scale, seen.grey
-            graph = neighbour_graph(self.places_, neighbours)
+            graph = spot_graph(self.places_, neighbours)
             edges = np.column_stack(sp.triu(graph, 1).nonzero())
             self.headings_ = synchronise_headings(graph, edges, turns(seen.grey, edges))
         return self._features(self.places_, self.headings_)
