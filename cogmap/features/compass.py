@@ -116,8 +116,8 @@ def synchronise_headings(
     .. math:: \sum_{ij} \rho\bigl(\Delta_{ij} - (\theta_i - \theta_j)\bigr) / \ell_{ij}^2
 
     with a loss ρ that counts outliers less, and at first none: around a box turns add up to some degrees too
-    many, which all edges of the loop are to share, and a loss that is robust from the start leaves in one seam.
-    Each connected piece has a north of its own; the heading of a view without edges is 0.
+    many, which all edges of the loop are to share; a loss that is robust from the start leaves them in one
+    seam. Each connected piece has a north of its own; the heading of a view without edges is 0.
 
     Parameters
     ----------

@@ -1,5 +1,6 @@
 """Spots: points that lie so close that they count once, as what is seen while turning on the spot does."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -32,13 +33,18 @@ def spots(X: Float[np.ndarray, "points features"]) -> Spots:
     X
         Points, one row each, more than one.
     """
-    near, apart = nearest_points(X, min(LOOKED_THROUGH, len(X) - 1))
-    usual = np.median(apart[:, min(10, near.shape[1]) - 1])
-    close = apart <= CLOSE * usual
-    chosen = np.zeros(len(X), bool)
-    for point, (others, same) in enumerate(zip(near, close, strict=True)):
-        chosen[point] = not chosen[others[same]].any()
-    first = np.flatnonzero(chosen)
+    first, reach = np.arange(len(X)), math.nan
+    while True:
+        near, apart = nearest_points(X[first], min(LOOKED_THROUGH, len(first) - 1))
+        if math.isnan(reach):
+            reach = CLOSE * float(np.median(apart[:, min(10, near.shape[1]) - 1]))
+        chosen = np.zeros(len(first), bool)
+        for point, (others, close) in enumerate(zip(near, apart <= reach, strict=True)):
+            chosen[point] = not chosen[others[close]].any()
+        # Where more lie close than are looked through, some are chosen beside each other at first.
+        if chosen.all():
+            break
+        first = first[chosen]
     return Spots(first, nearest_points(X[first], 1, queries=X).indices[:, 0])
 
 
