@@ -9,7 +9,7 @@ from typing import TypeVar
 import cv2
 import torch
 from joblib import cpu_count
-from threadpoolctl import threadpool_limits
+from threadpoolctl import get_cached_controller
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")
@@ -30,7 +30,7 @@ def one_thread(device: torch.device = CPU) -> Iterator[None]:
     if not ordered:
         torch.use_deterministic_algorithms(mode=True)
     try:
-        with threadpool_limits(limits=1), torch.no_grad():
+        with get_cached_controller().limit(limits=1), torch.no_grad():
             yield
     finally:
         torch.set_num_threads(threads)

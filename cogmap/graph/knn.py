@@ -8,7 +8,7 @@ from jaxtyping import Float, Int
 from joblib import Parallel, cpu_count, delayed
 from sklearn.neighbors import NearestNeighbors
 from sklearn.preprocessing import normalize
-from threadpoolctl import threadpool_limits
+from threadpoolctl import get_cached_controller
 
 from cogmap.errors import CogmapError
 from cogmap.graph.points import Checked, Cloud, checked_cloud
@@ -119,7 +119,7 @@ def _by_products(cloud: Checked, queries: Checked | None, neighbours: int) -> Ne
     pairs = [(a, b) for a in range(len(rows)) for b in range(a if queries is None else 0, len(columns))]
     best = np.zeros((sum(map(len, rows)), neighbours), np.result_type(rows[0], columns[0]))
     names = np.full(best.shape, -1)
-    with threadpool_limits(limits=1):
+    with get_cached_controller().limit(limits=1):
         # For one product no threads need be started.
         crew = Parallel(cpu_count() if len(pairs) > 1 else 1, backend="threading", return_as="generator")
         products = crew(delayed(np.matmul)(rows[a], columns[b].T) for a, b in pairs)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -15,6 +16,16 @@ CUT = 3.0
 """Error, in units of its robust standard deviation, from which on a pixel counts less."""
 
 Pose = Float[np.ndarray, "views 3"]
+
+
+class Seen(NamedTuple):
+    """What is imagined at the poses of some views."""
+
+    coarse: Float32[np.ndarray, "views pixels"]
+    unusual: Float32[np.ndarray, "views height width"]
+    """How much the views differ from it, pixel by pixel (`surprise.unusual`)."""
+
+
 Painter = Callable[[Pose], Float32[np.ndarray, "views pixels"]]
 
 
@@ -34,10 +45,12 @@ def coarse_size(height: int, width: int) -> tuple[int, int]:
 def aligned(
     views: Float32[np.ndarray, "views pixels"],
     poses: Pose,
-    fine: Painter,
+    there: Seen,
+    *,
+    fine: Callable[[Pose], Seen],
     quick: Painter,
     reach: Float[np.ndarray, "3"],
-) -> Pose:
+) -> tuple[Pose, Seen]:
     r"""Move poses until what is imagined there fits what is seen, whatever of it has changed.
 
     With D the imagined view and J its derivatives with respect to the pose, by central differences,
@@ -51,19 +64,24 @@ def aligned(
     ----------
     views
         What is seen, `coarse`.
-    poses
-        Where they are perceived: position and phase.
+    poses, there
+        Where they are perceived, position and phase, and what is imagined there.
     fine, quick
-        Give imagined views, `coarse`; the second for their derivatives.
+        Give imagined views; the second, `coarse`, for their derivatives.
     reach
         Differences of pose over which a view changes almost linearly.
+
+    Returns
+    -------
+    poses, there
+        After the moves.
 
     References
     ----------
     Lucas & Kanade (1981), An iterative image registration technique; Baker & Matthews (2004), Lucas-Kanade 20
     years on. Black & Anandan (1996), The robust estimation of multiple motions.
     """
-    left = views - fine(poses)
+    left = views - there.coarse
     for _ in range(STEPS):
         slopes = np.stack(
             [(quick(poses + step) - quick(poses - step)) / 2 for step in np.diag(reach)],
@@ -72,10 +90,15 @@ def aligned(
         scale = 1.4826 * np.median(np.abs(left), axis=1) + 0.5
         moves = np.stack([_step(*one) for one in zip(left, slopes, scale.tolist(), strict=True)])
         tried = poses + np.clip(moves, -3, 3) * reach
-        after = views - fine(tried)
-        better = (_loss(after, scale) < _loss(left, scale))[:, None]
-        poses, left = np.where(better, tried, poses), np.where(better, after, left)
-    return poses
+        new = fine(tried)
+        better = _loss(views - new.coarse, scale) < _loss(left, scale)
+        poses = np.where(better[:, None], tried, poses)
+        there = Seen(
+            np.where(better[:, None], new.coarse, there.coarse),
+            np.where(better[:, None, None], new.unusual, there.unusual),
+        )
+        left = views - there.coarse
+    return poses, there
 
 
 def _step(

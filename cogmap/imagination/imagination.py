@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import KW_ONLY, dataclass
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any, Literal, Protocol, get_args, runtime_checkable
 
 import numpy as np
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
-from cogmap.imagination.alignment import aligned, coarse
+from cogmap.imagination.alignment import Seen, aligned, coarse
 from cogmap.imagination.decoder import ChartDecoder
 from cogmap.imagination.places import VISIT, RememberedPlaces, Sources
 from cogmap.imagination.stroll import stroll
@@ -209,13 +209,15 @@ class Imagination:
         all but the visits on which these were seen.
         """
         poses = self._poses(views)
-        pixels = np.stack(list(self._unusual(views, poses)))
+        there = self._seen(views, poses, None)
+        pixels = there.unusual
         # aligning takes four times as long as all else: only where something may have changed
         doubtful = np.flatnonzero(pixels.max(axis=(1, 2)) > self.threshold / 2)
         if len(doubtful):
             seen = np.stack([views[view] for view in doubtful])
-            poses[doubtful] = self._aligned(seen, poses[doubtful], None)
-            pixels[doubtful] = np.stack(list(self._unusual(seen, poses[doubtful])))
+            there = Seen(*(part[doubtful] for part in there))
+            poses[doubtful], there = self._aligned(seen, poses[doubtful], there, None)
+            pixels[doubtful] = there.unusual
         return Surprise(
             pixels=pixels,
             position=poses[:, :2],
@@ -230,7 +232,8 @@ class Imagination:
         Unlike `perceive` it looks at every pixel and mistrusts those that do not fit, so it holds when a
         thing was moved; it takes thirty times as long.
         """
-        return self._aligned(views, self._poses(views), None)
+        poses = self._poses(views)
+        return self._aligned(views, poses, self._seen(views, poses, None), None)[0]
 
     @cached_property
     def threshold(self) -> float:
@@ -243,17 +246,15 @@ class Imagination:
         chosen = np.unique(np.linspace(0, len(places.phase) - 1, CALIBRATED).astype(int))
         views = np.stack([places.views[view] for view in chosen])
         poses = np.column_stack([places.position[chosen], places.phase[chosen]])
-        poses = self._aligned(views, poses, chosen)
-        most = [pixels.max() for pixels in self._unusual(views, poses, chosen)]
-        return float(2.25 * np.percentile(most, 99))
+        there = self._aligned(views, poses, self._seen(views, poses, chosen), chosen)[1]
+        return float(2.25 * np.percentile(there.unusual.max(axis=(1, 2)), 99))
 
     @cached_property
     def places(self) -> RememberedPlaces:
         """What is remembered, where the map perceives it."""
         views = self.memory.views_ if isinstance(self.memory, EvenMemory) else self.memory
         check_views(views, self.cmap.view_shape_)
-        known = self._perceived(views)
-        return RememberedPlaces(views, known.position.astype(np.float64), known.phase.astype(np.float64))
+        return RememberedPlaces.of(views, self._perceived(views))
 
     @cached_property
     def decoder(self) -> ChartDecoder:
@@ -336,26 +337,36 @@ class Imagination:
         return activity
 
     def _aligned(
-        self, views: Any, poses: Float[np.ndarray, "views 3"], without: Int[np.ndarray, "views"] | None
-    ) -> Float[np.ndarray, "views 3"]:
-        def paint(where: Float[np.ndarray, "views 3"], method: Turned) -> Float32[np.ndarray, "views pixels"]:
-            sources = self.places.sources(where[:, :2], self.sources, without=without)
-            return np.stack([coarse(each.view) for each in self.paint(sources, where[:, 2], method=method)])
-
-        seen = np.stack([coarse(view) for view in views])
-        reach = np.array([self.places.spacing, self.places.spacing, 0.01])
-        return aligned(seen, poses, partial(paint, method="warp"), partial(paint, method="blend"), reach)
-
-    def _unusual(
         self,
         views: Any,
         poses: Float[np.ndarray, "views 3"],
-        without: Int[np.ndarray, "views"] | None = None,
-    ) -> Iterator[Float32[np.ndarray, "height width"]]:
+        there: Seen,
+        without: Int[np.ndarray, "views"] | None,
+    ) -> tuple[Float[np.ndarray, "views 3"], Seen]:
+        def fine(where: Float[np.ndarray, "views 3"]) -> Seen:
+            return self._seen(views, where, without)
+
+        def quick(where: Float[np.ndarray, "views 3"]) -> Float32[np.ndarray, "views pixels"]:
+            sources = self.places.sources(where[:, :2], self.sources, without=without)
+            return np.stack([coarse(each.view) for each in self.paint(sources, where[:, 2], method="blend")])
+
+        seen = np.stack([coarse(view) for view in views])
+        reach = np.array([self.places.spacing, self.places.spacing, 0.01])
+        return aligned(seen, poses, there, fine=fine, quick=quick, reach=reach)
+
+    def _seen(
+        self, views: Any, poses: Float[np.ndarray, "views 3"], without: Int[np.ndarray, "views"] | None
+    ) -> Seen:
+        """Imagine what views show at their poses, and compare."""
         sources = self.places.sources(poses[:, :2], self.sources, without=without)
         distances = sources.distances[:, 0] / self.places.spacing
-        for view, painted, distance in zip(views, self.paint(sources, poses[:, 2]), distances, strict=True):
-            yield unusual(view, painted, float(distance))
+        found = [
+            (coarse(painted.view), unusual(view, painted, distance))
+            for view, painted, distance in zip(
+                views, self.paint(sources, poses[:, 2]), distances.tolist(), strict=True
+            )
+        ]
+        return Seen(*map(np.stack, zip(*found, strict=True)))
 
     def _walked(
         self, route: Float[np.ndarray, "points 2"], step: float | None, start: float | None, end: float | None

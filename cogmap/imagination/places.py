@@ -10,6 +10,8 @@ import numpy as np
 from jaxtyping import Float, Float32, Int
 from scipy.spatial import KDTree
 
+from cogmap.map.activity import Activity
+
 CANDIDATES = 40
 """Nearest places that sources are chosen from."""
 APART = 0.5
@@ -43,6 +45,11 @@ class RememberedPlaces:
     """In the unit of the map."""
     phase: Float[np.ndarray, "views"]
     """Heading in the frame of the map, rad."""
+
+    @classmethod
+    def of(cls, views: Any, known: Activity) -> RememberedPlaces:
+        """Remember views where they are perceived."""
+        return cls(views, known.position.astype(np.float64), known.phase.astype(np.float64))
 
     @cached_property
     def tree(self) -> KDTree:

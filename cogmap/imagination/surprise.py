@@ -113,12 +113,19 @@ def unusual(
     nearest remembered place is, in units of the memory's spacing.
     """
     imagined = np.clip(painted.view, 0, 255)
-    error = np.square(imagined - view).mean(axis=2)
+    error = _grey(np.square(imagined - view))
     across = (np.roll(imagined, -1, axis=1) - np.roll(imagined, 1, axis=1)) / 2
     down = np.gradient(imagined, axis=0)
-    edges = (np.square(across) + np.square(down)).mean(axis=2)
+    edges = _grey(np.square(across) + np.square(down))
     variance = FLOOR**2 + DOUBT * np.square(painted.spread) + (SLIP * distance**2) ** 2 * edges
     return np.asarray(np.sqrt(_patches(error) / _patches(variance)), np.float32)
+
+
+def _grey(
+    values: Float32[np.ndarray, "height width 3"],
+) -> Float32[np.ndarray, "height width"]:
+    """Average over colours; numpy's mean over an axis of three takes seven times as long."""
+    return np.asarray((values[:, :, 0] + values[:, :, 1] + values[:, :, 2]) / 3)
 
 
 def _patches(values: Float32[np.ndarray, "height width"]) -> Float32[np.ndarray, "height width"]:

@@ -68,10 +68,10 @@ def _blended(
             after = half * (b * b * b - b * b)
             first = (-int(whole) - 2) % width
             line = views[source, row].reshape(-1)
-            for value in range(3 * (width - first)):
-                ring[value] = line[3 * first + value]
-            for value in range(3 * (first + 3)):
-                ring[3 * (width - first) + value] = line[value % (3 * width)]
+            seam, again = 3 * (width - first), min(3 * (first + 3), 3 * width)
+            ring[:seam] = line[3 * first :]
+            ring[seam : seam + again] = line[:again]
+            ring[seam + again :] = line[: 3 * (first + 3) - again]
             for value in range(3 * width):
                 shifted[value] = (
                     before * ring[value]

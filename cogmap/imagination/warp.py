@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import typing
+
 import cv2
 import numpy as np
 from jaxtyping import Float32, UInt8
 
 from cogmap.imagination.flow import MARGIN, panoramic_flow, wrapped
 from cogmap.imagination.turning import Painted
+from cogmap.kernels import kernel
 
 Map = Float32[np.ndarray, "height width 2"]
 
@@ -44,28 +47,50 @@ def warped(
     flows += [panoramic_flow(turned[0], other) for other in turned[1:]]
     for flow, by in zip(flows, part, strict=True):
         flow[:, :, 0] += by - part[0]
-    onwards = np.einsum("s,shwc->hwc", affine[used], np.stack(flows))
+    onwards = np.zeros_like(flows[0])
+    for weight, flow in zip(affine[used], flows, strict=True):
+        onwards += weight * flow
     grid = _grid(*turned[0].shape[:2])
     grid[:, :, 0] -= part[0]
     at = grid - onwards
     # flow is smooth and the step short: one more step of this iteration changes less than 0.01 dB
     for _ in range(2):
         at = grid - sampled(onwards, at, cv2.INTER_LINEAR)
-    painted = []
-    for view, flow, by in zip(turned, flows, part, strict=True):
+    painted = np.empty((len(used), *turned[0].shape), np.float32)
+    for shown, view, flow, by in zip(painted, turned, flows, part, strict=True):
         where = at + sampled(flow, at, cv2.INTER_LINEAR)
         where[:, :, 0] += part[0] - by
-        painted.append(sampled(view.astype(np.float32), where, cv2.INTER_CUBIC))
-    return averaged(np.stack(painted), near[used])
+        shown[:] = sampled(view.astype(np.float32), where, cv2.INTER_CUBIC)
+    return averaged(painted, near[used])
 
 
 def averaged(
     painted: Float32[np.ndarray, "sources height width 3"], near: Float32[np.ndarray, "sources"]
 ) -> Painted:
     """Average what the sources show, and tell how far they agree."""
-    mean = np.einsum("s,shwc->hwc", near, painted)
-    spread = np.einsum("s,shwc->hw", near, np.square(painted - mean)) / 3
-    return Painted(mean, np.sqrt(spread))
+    return Painted(*_averaged(painted, near))
+
+
+@kernel(nogil=True)
+@typing.no_type_check
+def _averaged(painted: np.ndarray, near: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    sources, height, width, _ = painted.shape
+    mean = np.zeros((height, width, 3), np.float32)
+    spread = np.zeros((height, width), np.float32)
+    for row in range(height):
+        average = mean[row].reshape(-1)
+        for source in range(sources):
+            line = painted[source, row].reshape(-1)
+            for value in range(3 * width):
+                average[value] += near[source] * line[value]
+        for source in range(sources):
+            off = painted[source, row] - mean[row]
+            for column in range(width):
+                red, green, blue = off[column]
+                spread[row, column] += near[source] * (red * red + green * green + blue * blue)
+        for column in range(width):
+            spread[row, column] = np.sqrt(spread[row, column] / np.float32(3))
+    return mean, spread
 
 
 def sampled(image: Float32[np.ndarray, "height width _"], where: Map, how: int) -> np.ndarray:

@@ -22,6 +22,7 @@ from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.trial import Trial
 from cogmap.imagination import Imagination
+from cogmap.imagination.places import RememberedPlaces
 from cogmap.map.activity import Activity
 
 
@@ -51,7 +52,11 @@ class Dreamer:
     @cached_property
     def imagination(self) -> Imagination:
         """Of all views of the walk."""
-        return Imagination(self.trial.cmap, memory=np.asarray(self.trial.walk.views))
+        views, known = np.asarray(self.trial.walk.views), self.trial.train
+        imagination = Imagination(self.trial.cmap, memory=views)
+        # what is perceived to score is remembered
+        imagination.places = RememberedPlaces.of(views, known)
+        return imagination
 
     @cached_property
     def frame(self) -> MapFrame:

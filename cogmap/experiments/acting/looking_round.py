@@ -21,6 +21,8 @@ from cogmap.plots import plot_looking_round
 ROOMS = {"blue_wall": "blue_wall", "white": "white_rectangle"}
 TURN = np.deg2rad(6)
 """From look to look, rad."""
+QUERIES = 500
+"""Poses that it is put at, in each room."""
 DT, LOOKS = 0.2, 5
 """Time from look to look, s, and looks to either side."""
 
@@ -32,7 +34,7 @@ class _Looked(NamedTuple):
 
 
 @experiment(room="blue_wall", views=17_000, any_room=False)
-def looking_round(conditions: Conditions, *, queries: int = 500) -> Result:
+def looking_round(conditions: Conditions) -> Result:
     """Turn the head where a view may have been taken at either of two places, until one hypothesis stands.
 
     An eye of 90 degrees sees no more than a part of a white room, of which one wall may be blue. The animal
@@ -41,7 +43,7 @@ def looking_round(conditions: Conditions, *, queries: int = 500) -> Result:
     turning, and after turns of 6 degrees, up to 30 to either side, whether it says that it knows
     (`resolved`) or not. In the white room nothing could tell, and it must not say that it knows.
     """
-    looked = {name: _look(conditions, Arena.load(room), queries) for name, room in ROOMS.items()}
+    looked = {name: _look(conditions, Arena.load(room)) for name, room in ROOMS.items()}
     metrics: dict[str, float] = {}
     for name, (table, *_) in looked.items():
         known = table["resolved"]
@@ -53,7 +55,7 @@ def looking_round(conditions: Conditions, *, queries: int = 500) -> Result:
             f"{name}_turned_median_deg": float(table["turned_deg"].median()),
         }
     return Result(
-        metrics={"queries": queries, **metrics},
+        metrics={"queries": QUERIES, **metrics},
         tables={name: each.table for name, each in looked.items()},
         figures={
             "looking_round": plot_looking_round(
@@ -66,12 +68,12 @@ def looking_round(conditions: Conditions, *, queries: int = 500) -> Result:
     )
 
 
-def _look(conditions: Conditions, room: Arena, queries: int) -> _Looked:
+def _look(conditions: Conditions, room: Arena) -> _Looked:
     camera, body = Camera.perspective(80, 60), Disc()
     here = replace(conditions, room=room)
     walk = here.explore(Brownian(), camera)
     fresh = here.explore(Brownian(), camera, fresh=True).require("poses")
-    starts = fresh[np.unique(np.linspace(0, len(fresh) - 1, queries).astype(int))]
+    starts = fresh[np.unique(np.linspace(0, len(fresh) - 1, QUERIES).astype(int))]
     memory = SceneMemory(image_codes(walk.views), np.log(walk.require("odours")))
     turn = np.array([0.0, TURN / (DT * body.max_turn)])
     policy = LookRound(memory, turn, looks=LOOKS)
