@@ -26,6 +26,8 @@ NORTH = 5
 """Of these, which tell the heading."""
 RIDGE = 1e-3
 """Of the affine weights."""
+DRIFT = 30
+"""Times that what headings drift by is averaged over neighbours: over half a metre in a room of some."""
 LOOK_ALIKE = 6.0
 """Usual distances to a neighbour beyond which a view that looks alike was taken elsewhere."""
 SHIFTS = 0.99
@@ -110,7 +112,7 @@ class RelaxedPlaces:
         # Neighbours agree on turns better than charts do on phase, but drift over the room; charts do not.
         drift = np.exp(1j * (phase.astype(np.float64) - compass))
         even = _matrix(near, (near >= 0) / (near >= 0).sum(axis=1, keepdims=True))
-        for _ in range(3):
+        for _ in range(DRIFT):
             drift = even @ drift
         places = np.asarray(affine @ (affine @ (position[:, 0] + 1j * position[:, 1])))
         poses = relax_walk(PoseGraph(places, wrap_angle(compass + np.angle(drift))), affine)
