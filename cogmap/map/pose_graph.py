@@ -15,7 +15,7 @@ STRAIGHT = 0.2
 """Largest turn (rad) of a step whose direction is taken for that in which the body looks."""
 WALKS = 0.5
 """Mean cosine between steps and headings from which on the views come in the order of a walk."""
-LEVEL = 300.0
+LEVEL = 2000.0
 """How much a heading counts that its neighbours contradict, beside a step of the same angle."""
 LENGTH = 0.1
 """How much the length of a step counts beside its direction: bodies keep to a direction, not to a pace."""

@@ -26,8 +26,8 @@ NORTH = 5
 """Of these, which tell the heading."""
 RIDGE = 1e-3
 """Of the affine weights."""
-DRIFT = 30
-"""Times that what headings drift by is averaged over neighbours: over half a metre in a room of some."""
+DRIFT = 100
+"""Times that what headings drift by is averaged over neighbours: over a metre in a room of some."""
 LOOK_ALIKE = 6.0
 """Usual distances to a neighbour beyond which a view that looks alike was taken elsewhere."""
 SHIFTS = 0.99
