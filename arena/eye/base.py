@@ -1,16 +1,22 @@
-"""The contract of an eye: whatever paints what is seen from poses."""
+"""The contracts of an eye: it paints what is seen from poses, or watches a body from where it stands."""
 
+from collections.abc import Sequence
+from functools import partial
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from arena.eye.camera import Images, Poses
+from arena.bodies.base import Body, Configurations
+from arena.eye.camera import Camera, Images, Poses
 from arena.rooms.arena import Arena
+
+Noise = np.random.Generator | Sequence[np.random.Generator]
+"""Where the noise of a sensor comes from: one generator, or one for each view."""
 
 
 @runtime_checkable
 class Eye(Protocol):
-    """What sees: an `arena.eye.camera.Camera`, or anything that renders like it."""
+    """What sees on a body: an `arena.eye.camera.Camera`, or anything that renders like it."""
 
     @property
     def height(self) -> int:
@@ -25,3 +31,54 @@ class Eye(Protocol):
 
     def model_dump(self) -> dict[str, Any]:
         """Give the parameters that, with the arena, determine every pixel."""
+
+
+@runtime_checkable
+class Watcher(Protocol):
+    """What sees a body from outside: an `arena.eye.overhead.Overhead`, or anything that looks like it."""
+
+    @property
+    def height(self) -> int:
+        """Rows of an image."""
+
+    @property
+    def width(self) -> int:
+        """Columns of an image."""
+
+    def look(
+        self, arena: Arena, body: Body, configurations: Configurations, *, rng: np.random.Generator
+    ) -> Images:
+        """Paint the body in each configuration, with what sensor noise there is from the generator."""
+
+    def model_dump(self) -> dict[str, Any]:
+        """Give the parameters that, with the arena and the body, determine every pixel."""
+
+
+@runtime_checkable
+class SeesItself(Protocol):
+    """A body that a camera on it sees a part of."""
+
+    def paint_itself(self, camera: Camera, configurations: Configurations, views: Images) -> None:
+        """Paint it onto the views, which have no noise yet."""
+
+
+AnyEye = Eye | Watcher
+
+
+def see(
+    eye: AnyEye, arena: Arena, body: Body, configurations: Configurations, out: Images, rng: Noise
+) -> None:
+    """Paint what an eye sees of a room and of a body in each configuration."""
+    if isinstance(eye, Camera):
+        own = partial(body.paint_itself, eye, configurations) if isinstance(body, SeesItself) else None
+        eye.render(arena, body.camera_poses(configurations), out=out, rng=rng, own=own)
+        return
+    parts = [(slice(None), rng)] if isinstance(rng, np.random.Generator) else [
+        (slice(k, k + 1), one) for k, one in enumerate(rng)
+    ]
+    for rows, its in parts:
+        here = configurations[rows]
+        if isinstance(eye, Watcher):
+            out[rows] = eye.look(arena, body, here, rng=its)
+        else:
+            out[rows] = eye.render(arena, body.camera_poses(here), rng=its)

@@ -116,6 +116,7 @@ class Camera(Settings):
         *,
         out: Images | None = None,
         rng: np.random.Generator | Sequence[np.random.Generator] | None = None,
+        own: Callable[[Images], None] | None = None,
     ) -> Images:
         """Paint what the camera sees from each pose (m, m, rad).
 
@@ -129,6 +130,8 @@ class Camera(Settings):
         rng
             Where the sensor noise comes from, or one generator for each view; needed only if the camera has
             `noise`.
+        own
+            Paints what the camera sees of its own body onto the views, before their noise.
 
         Raises
         ------
@@ -152,6 +155,8 @@ class Camera(Settings):
         scene = (faces, tuple(floor), *textures), tuple(lens), tuple(sky), ray
         rows = out.reshape(*shape[:2], 3 * self.width)
         _in_threads(lambda at: render.render(poses[at], *scene, rows[at]), len(poses))
+        if own is not None:
+            own(out)
         if rng is not None and self.noise:
             each = [rng] * len(out) if isinstance(rng, np.random.Generator) else rng
             for image, its in zip(out, each, strict=True):
