@@ -12,6 +12,7 @@ from arena.bodies.turntable import Turntable
 from arena.errors import ArenaError
 from arena.exploration import explore
 from arena.eye.camera import Camera
+from arena.eye.overhead import Overhead
 from arena.motions.babble import Babble
 from arena.motions.base import Motion, Walk
 from arena.motions.brownian import Brownian
@@ -48,6 +49,7 @@ __all__ = [
     "Motion",
     "Nose",
     "OdourField",
+    "Overhead",
     "Pillar",
     "Policy",
     "Rail",

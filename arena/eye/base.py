@@ -1,6 +1,5 @@
 """The contracts of an eye: it paints what is seen from poses, or watches a body from where it stands."""
 
-from collections.abc import Sequence
 from functools import partial
 from typing import Any, Protocol, runtime_checkable
 
@@ -8,10 +7,8 @@ import numpy as np
 
 from arena.bodies.base import Body, Configurations
 from arena.eye.camera import Camera, Images, Poses
+from arena.eye.noise import Generators
 from arena.rooms.arena import Arena
-
-Noise = np.random.Generator | Sequence[np.random.Generator]
-"""Where the noise of a sensor comes from: one generator, or one for each view."""
 
 
 @runtime_checkable
@@ -46,9 +43,9 @@ class Watcher(Protocol):
         """Columns of an image."""
 
     def look(
-        self, arena: Arena, body: Body, configurations: Configurations, *, rng: np.random.Generator
+        self, arena: Arena, body: Body, configurations: Configurations, *, rng: Generators
     ) -> Images:
-        """Paint the body in each configuration, with what sensor noise there is from the generator."""
+        """Paint the body in each configuration, with what sensor noise there is from the generators."""
 
     def model_dump(self) -> dict[str, Any]:
         """Give the parameters that, with the arena and the body, determine every pixel."""
@@ -66,19 +63,16 @@ AnyEye = Eye | Watcher
 
 
 def see(
-    eye: AnyEye, arena: Arena, body: Body, configurations: Configurations, out: Images, rng: Noise
+    eye: AnyEye, arena: Arena, body: Body, configurations: Configurations, out: Images, rng: Generators
 ) -> None:
     """Paint what an eye sees of a room and of a body in each configuration."""
     if isinstance(eye, Camera):
         own = partial(body.paint_itself, eye, configurations) if isinstance(body, SeesItself) else None
         eye.render(arena, body.camera_poses(configurations), out=out, rng=rng, own=own)
-        return
-    parts = [(slice(None), rng)] if isinstance(rng, np.random.Generator) else [
-        (slice(k, k + 1), one) for k, one in enumerate(rng)
-    ]
-    for rows, its in parts:
-        here = configurations[rows]
-        if isinstance(eye, Watcher):
-            out[rows] = eye.look(arena, body, here, rng=its)
-        else:
-            out[rows] = eye.render(arena, body.camera_poses(here), rng=its)
+    elif isinstance(eye, Watcher):
+        out[:] = eye.look(arena, body, configurations, rng=rng)
+    elif isinstance(rng, np.random.Generator):
+        out[:] = eye.render(arena, body.camera_poses(configurations), rng=rng)
+    else:
+        for view, pose, its in zip(out, body.camera_poses(configurations)[:, None], rng, strict=True):
+            view[:] = eye.render(arena, pose, rng=its)[0]
