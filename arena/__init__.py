@@ -7,6 +7,7 @@ from arena.bodies.arm import Arm
 from arena.bodies.base import Axis, Body
 from arena.bodies.disc import Disc
 from arena.bodies.heavy_disc import HeavyDisc
+from arena.bodies.neck import Neck
 from arena.bodies.rail import Rail
 from arena.bodies.turntable import Turntable
 from arena.errors import ArenaError
@@ -47,6 +48,7 @@ __all__ = [
     "Journeys",
     "Light",
     "Motion",
+    "Neck",
     "Nose",
     "OdourField",
     "Overhead",

@@ -7,7 +7,6 @@ import numpy as np
 import shapely
 from jaxtyping import Float
 from pydantic import Field
-from shapely.geometry.base import BaseGeometry
 
 from arena.bodies.base import Body, Configurations
 from arena.errors import ArenaError
@@ -15,7 +14,7 @@ from arena.eye.camera import Images
 from arena.eye.capsules import paint
 from arena.eye.noise import Generators, add_noise
 from arena.rooms.arena import Arena
-from arena.rooms.materials import TEXEL, mean_colour, materials, texture
+from arena.rooms.materials import TEXEL, materials, texture
 from arena.settings import Positive, Settings
 
 WALL = 0.06
@@ -31,8 +30,8 @@ _Pixels = Annotated[int, Field(gt=0, le=4096)]
 class Overhead(Settings):
     """A camera that looks straight down from far above: parallel rays, x to the right and y up.
 
-    It sees the floor, the tops of solids, walls, and over them the body: each link a strip of a material of
-    its own with round ends, later ones on top, and a light dot where the body's own eye is, towards where
+    It sees the floor, walls, solids (with the material of their first side on top), and over them the body: each link a strip of a material of
+    its own with round ends, later ones on top, and a red dot where the body's own eye is, towards where
     that looks. A pixel's share of a link is taken from the distance of its middle from the link's axis,
     so that the image changes smoothly as the body moves.
 
@@ -59,7 +58,7 @@ class Overhead(Settings):
     height: _Pixels = 64
     center: tuple[float, float] = (0.0, 0.0)
     span: Positive = 4.0
-    links: Annotated[tuple[str, ...], Field(min_length=1)] = ("blue", "brick", "plaid", "books")
+    links: Annotated[tuple[str, ...], Field(min_length=1)] = ("blue", "white")
     noise: Annotated[float, Field(ge=0, le=1)] = 0.0
 
     def __init__(self, width: int = 64, height: int = 64, **fields: object) -> None:
@@ -95,7 +94,7 @@ class Overhead(Settings):
         ahead = 0.5 * body.radius * np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
         dots = np.repeat((poses[:, :2] + ahead)[:, None], 2, axis=1)
         count = segments.shape[1]
-        strips = np.stack([*(_strip(self.links[k % len(self.links)], pixel) for k in range(count)), _LIGHT])
+        strips = np.stack([*(_strip(self.links[k % len(self.links)], pixel) for k in range(count)), _DOT])
         radii = np.array([body.radius] * count + [0.4 * body.radius])
         capsules = np.concatenate([segments, dots[:, None]], axis=1)
         out = np.empty((len(configurations), self.height, self.width, 3), np.uint8)
@@ -104,7 +103,7 @@ class Overhead(Settings):
         return out
 
 
-_LIGHT = np.full((STRIP, 3), 235.0)
+_DOT = np.tile([214.0, 69.0, 65.0], (STRIP, 1))
 
 
 @lru_cache(maxsize=32)
@@ -123,22 +122,21 @@ def _plan(eye: Overhead, arena: Arena) -> Float[np.ndarray, "height width 3"]:
     x = eye.center[0] + (np.arange(eye.width * fine) + 0.5 - eye.width * fine / 2) * pixel
     y = eye.center[1] - (np.arange(eye.height * fine) + 0.5 - eye.height * fine / 2) * pixel
     plan = np.empty((len(y), len(x), 3), np.float32)
-    if isinstance(arena.floor, str):
-        tile = texture(arena.floor)
-        i, j = (np.floor(along / TEXEL).astype(int) for along in (x, y))
-        plan[:] = tile[i[None] % tile.shape[0], j[:, None] % tile.shape[1]]
-    else:
-        plan[:] = arena.floor
-    solids: list[tuple[BaseGeometry, tuple[str, ...]]] = [
-        (shapely.Polygon(solid.outline), solid.sides) for solid in arena.solids
-    ]
+    i, j = np.floor(x / TEXEL).astype(int)[None], np.floor(y / TEXEL).astype(int)[:, None]
+
+    def laid(material: str) -> np.ndarray:
+        tile = texture(material)
+        return tile[i % tile.shape[0], j % tile.shape[1]]
+
+    plan[:] = laid(arena.floor) if isinstance(arena.floor, str) else arena.floor
+    solids = [(shapely.Polygon(solid.outline), solid.sides[0]) for solid in arena.solids]
     walls = [
-        (shapely.LineString([wall.start, wall.end]).buffer(WALL / 2, cap_style="square"), (wall.material,))
+        (shapely.LineString([wall.start, wall.end]).buffer(WALL / 2, cap_style="square"), wall.material)
         for wall in arena.walls
     ]
-    for shape, sides in [*solids, *walls]:
+    for shape, material in [*solids, *walls]:
         shapely.prepare(shape)
         inside = shapely.contains_xy(shape, x[None], y[:, None])
-        plan[inside] = np.mean([mean_colour(side) for side in sides], axis=0)
+        plan[inside] = laid(material)[inside]
     blocks = plan.reshape(eye.height, fine, eye.width, fine, 3)
     return blocks.mean(axis=(1, 3), dtype=np.float64)
