@@ -50,6 +50,8 @@ class Explorers:
         ArenaError
             For a start that is not free.
         """
+        if not len(which):
+            return
         there = np.array(starts, float)
         check_starts(self.body, self.arena, there)
         for k, rng in zip(which.tolist(), rngs, strict=True):

@@ -112,7 +112,7 @@ def joints_of(body: Body, configurations: np.ndarray) -> np.ndarray | None:
     return None if body.axes == POSE else configurations
 
 
-def check_starts(body: Body, arena: Arena, configurations: Configurations) -> None:
+def check_starts(body: Body, arena: Arena, configurations: np.ndarray) -> None:
     """Raise an `ArenaError` unless a body can start at each of these configurations."""
     names, shape = ", ".join(f"{axis.name} ({axis.unit})" for axis in body.axes), configurations.shape
     if len(shape) != 2 or shape[1] != len(body.axes):
