@@ -185,9 +185,9 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
             raise ArenaError("the animal is nowhere yet; call reset() before the first step()")
         command = np.asarray(action, float)
         if command.shape != self.action_space.shape:
+            wanted = _COUNTS[len(self.body.motors)]
             raise ArenaError(
-                f"the action has shape {command.shape}; {self.control} takes {_COUNTS[len(self.body.motors)]} "
-                "between -1 and 1"
+                f"the action has shape {command.shape}; {self.control} takes {wanted} between -1 and 1"
             )
         self._one.act(_ONE, self.velocities(command[None]), self.dt)
         after, info = self._sense()

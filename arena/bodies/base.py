@@ -98,7 +98,7 @@ class Body(Protocol):
         """Where its eye and nose are, x, y (m), and where the eye looks, rad in (−π, π]."""
 
     def segments(self, configurations: Configurations) -> Segments:
-        """What can be seen of it from outside."""
+        """Place what can be seen of it from outside."""
 
     def at_large(self, arena: Arena, count: int) -> AtLarge:
         """Give the physics of this many of its kind."""
@@ -108,7 +108,7 @@ class Body(Protocol):
 
 
 def joints_of(body: Body, configurations: np.ndarray) -> np.ndarray | None:
-    """Give what poses do not tell of a body: its configurations, but for one whose configuration is its pose."""
+    """Give what poses do not tell: the configurations of a body, or None if these are its poses."""
     return None if body.axes == POSE else configurations
 
 

@@ -50,7 +50,7 @@ class Jointed(Settings):
     @model_validator(mode="after")
     def _one_gain_each(self) -> "Jointed":
         if self.motor_gains is not None and len(self.motor_gains) != len(self.axes):
-            raise ValueError(f"{len(self.motor_gains)} motor_gains for {len(self.axes)} motors; give one each")
+            raise ValueError(f"{len(self.motor_gains)} gains for {len(self.axes)} motors; give one each")
         return self
 
     @property
@@ -90,9 +90,10 @@ class Jointed(Settings):
         low, high = self.ranges.T
         free &= ((low <= joints) & (joints <= high)).all(axis=1)
         # What crosses no edge is in a solid as a whole, or not at all.
-        solids = shapely.union_all([shapely.Polygon(s.outline) for s in arena.solids if s.height > self.height])
-        inside: np.ndarray = shapely.contains_xy(solids, self.segments(joints)[:, 0, 0])
-        return free & ~inside
+        for solid in arena.solids:
+            if solid.height > self.height:
+                free &= ~shapely.contains_xy(shapely.Polygon(solid.outline), self.segments(joints)[:, 0, 0])
+        return free
 
     def sample_free(self, arena: Arena, count: int, rng: np.random.Generator) -> Configurations:
         """Draw configurations evenly from the free ones.
@@ -137,7 +138,7 @@ class Jointed(Settings):
         return np.array([axis.limits or (-math.inf, math.inf) for axis in self.axes])
 
     def edges(self, arena: Arena) -> Float[np.ndarray, "edges 2 2"]:
-        """Ends (m) of all in the room that stops it."""
+        """List the ends (m) of all in the room that stops it."""
         faces = arena.surfaces
         return np.stack([faces.start, faces.end], axis=1)[faces.height > self.height]
 

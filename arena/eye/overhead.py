@@ -30,10 +30,10 @@ _Pixels = Annotated[int, Field(gt=0, le=4096)]
 class Overhead(Settings):
     """A camera that looks straight down from far above: parallel rays, x to the right and y up.
 
-    It sees the floor, walls, solids (with the material of their first side on top), and over them the body: each link a strip of a material of
-    its own with round ends, later ones on top, and a red dot where the body's own eye is, towards where
-    that looks. A pixel's share of a link is taken from the distance of its middle from the link's axis,
-    so that the image changes smoothly as the body moves.
+    It sees the floor, walls and solids, of the material of their first side on top, and over them the body:
+    each link a strip of a material of its own with round ends, later ones on top, and a red dot where the
+    body's own eye is, towards where that looks. A pixel's share of a link is taken from the distance of its
+    middle from the link's axis, so that the image changes smoothly as the body moves.
 
     Parameters
     ----------
@@ -89,7 +89,8 @@ class Overhead(Settings):
         """
         pixel = self.span / self.width
         # Of the middle of the pixel at the top left.
-        corner = np.array(self.center) + 0.5 * (pixel - self.span) * np.array([1.0, -self.height / self.width])
+        x, y = self.center
+        corner = x + 0.5 * (1 - self.width) * pixel, y + 0.5 * (self.height - 1) * pixel
         segments, poses = body.segments(configurations), body.camera_poses(configurations)
         ahead = 0.5 * body.radius * np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
         dots = np.repeat((poses[:, :2] + ahead)[:, None], 2, axis=1)
@@ -111,7 +112,8 @@ def _strip(material: str, pixel: float) -> Float[np.ndarray, "texels 3"]:
     """Average a material across a link and over the length of a pixel (m) along it, for each texel."""
     line = texture(material).mean(axis=1)
     wide = max(1, round(pixel / TEXEL))
-    return np.stack([np.roll(line, k, axis=0) for k in range(wide)]).mean(axis=0)[:STRIP]
+    mean: np.ndarray = np.stack([np.roll(line, k, axis=0) for k in range(wide)]).mean(axis=0)[:STRIP]
+    return mean
 
 
 @lru_cache(maxsize=8)
@@ -126,7 +128,8 @@ def _plan(eye: Overhead, arena: Arena) -> Float[np.ndarray, "height width 3"]:
 
     def laid(material: str) -> np.ndarray:
         tile = texture(material)
-        return tile[i % tile.shape[0], j % tile.shape[1]]
+        texels: np.ndarray = tile[i % tile.shape[0], j % tile.shape[1]]
+        return texels
 
     plan[:] = laid(arena.floor) if isinstance(arena.floor, str) else arena.floor
     solids = [(shapely.Polygon(solid.outline), solid.sides[0]) for solid in arena.solids]
@@ -139,4 +142,5 @@ def _plan(eye: Overhead, arena: Arena) -> Float[np.ndarray, "height width 3"]:
         inside = shapely.contains_xy(shape, x[None], y[:, None])
         plan[inside] = laid(material)[inside]
     blocks = plan.reshape(eye.height, fine, eye.width, fine, 3)
-    return blocks.mean(axis=(1, 3), dtype=np.float64)
+    mean: np.ndarray = blocks.mean(axis=(1, 3), dtype=np.float64)
+    return mean

@@ -125,7 +125,8 @@ class Babble(Settings):
                 dt = min(1 / _length(body.velocities(command) / every), self.correlation_time)
                 yield command, dt
                 memory, kick = self._memory(dt)
-                wish = memory * wish * (-1 if bodies.touched[0] else 1) + kick * rng.standard_normal(len(wish))
+                wish *= -memory if bodies.touched[0] else memory
+                wish += kick * rng.standard_normal(len(wish))
             goal, touched = body.sample_free(arena, 1, rng)[0], not swings
             while not touched:
                 way = goal - bodies.configurations[0]
@@ -141,7 +142,7 @@ class Babble(Settings):
         return np.array([self.speed if unit == "m" else self.turn for unit in body.motors])
 
     def _memory(self, dt: float) -> tuple[float, float]:
-        """What is left of x after dt (s), and how strong ξ is."""
+        """Tell what is left of x after dt (s), and how strong ξ is."""
         memory = math.exp(-dt / self.correlation_time)
         return memory, math.sqrt(1 - memory**2)
 
