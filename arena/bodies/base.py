@@ -6,6 +6,7 @@ from typing import Any, Literal, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from arena.angles import wrap_angle
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
 
@@ -105,6 +106,12 @@ class Body(Protocol):
 
     def model_dump(self) -> dict[str, Any]:
         """Give the parameters."""
+
+
+def wrapped(body: Body, values: np.ndarray) -> np.ndarray:
+    """Wrap what is on a body's circles to (−π, π], in its configurations or in differences of these."""
+    circles = [axis.kind == "circle" for axis in body.axes]
+    return np.where(circles, wrap_angle(values), values)
 
 
 def joints_of(body: Body, configurations: np.ndarray) -> np.ndarray | None:

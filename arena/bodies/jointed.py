@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float, Int
 from pydantic import Field, model_validator
 
 from arena.angles import wrap_angle
-from arena.bodies.base import TOLERANCE, Axis, Configurations, Segments, Unit
+from arena.bodies.base import TOLERANCE, Axis, Configurations, Segments, Unit, wrapped
 from arena.bodies.linkage import Chain, are_clear, bend_all, turn_all
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
@@ -148,16 +148,13 @@ class Linkages:
 
     def __init__(self, body: Jointed, arena: Arena, count: int) -> None:
         self._body, self._edges = body, body.edges(arena)
-        self._circles = [axis.kind == "circle" for axis in body.axes]
         self._joints = np.full((count, len(body.axes)), math.nan)
         self._touched = np.zeros(count, bool)
 
     @property
     def configurations(self) -> Configurations:
         """Where each is."""
-        joints = self._joints.copy()
-        joints[:, self._circles] = wrap_angle(joints[:, self._circles])
-        return joints
+        return wrapped(self._body, self._joints)
 
     @property
     def touched(self) -> Bool[np.ndarray, " bodies"]:
