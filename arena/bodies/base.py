@@ -123,7 +123,7 @@ def check_starts(body: Body, arena: Arena, configurations: np.ndarray) -> None:
     """Raise an `ArenaError` unless a body can start at each of these configurations."""
     names, shape = ", ".join(f"{axis.name} ({axis.unit})" for axis in body.axes), configurations.shape
     if len(shape) != 2 or shape[1] != len(body.axes):
-        raise ArenaError(f"the starts are of shape {shape}; a {type(body).__name__} has {names} in a row")
+        raise ArenaError(f"the starts are of shape {shape}; give {names} of the {type(body).__name__} a row")
     bad = np.flatnonzero(~np.isfinite(configurations).all(axis=1))
     if len(bad):
         raise ArenaError(f"the start {configurations[bad[0]]} is not finite; give {names}")
@@ -131,6 +131,6 @@ def check_starts(body: Body, arena: Arena, configurations: np.ndarray) -> None:
     if len(bad):
         told = ", ".join(f"{value:g}" for value in configurations[bad[0]])
         raise ArenaError(
-            f"a {type(body).__name__} of radius {body.radius:g} m cannot start at {names} = {told}: it would "
-            "touch something, leave the platform or the range of an axis; choose a start in free space"
+            f"a body ({type(body).__name__} of radius {body.radius:g} m) cannot start at {names} = {told}: it "
+            "would touch something, leave the platform or the range of an axis; choose a start in free space"
         )

@@ -15,6 +15,7 @@ from arena.eye.capsules import paint
 from arena.eye.noise import Generators, add_noise
 from arena.rooms.arena import Arena
 from arena.rooms.materials import TEXEL, materials, texture
+from arena.rooms.parts import Solid, Wall
 from arena.settings import Positive, Settings
 
 WALL = 0.06
@@ -98,8 +99,9 @@ class Overhead(Settings):
         strips = np.stack([*(_strip(self.links[k % len(self.links)], pixel) for k in range(count)), _DOT])
         radii = np.array([body.radius] * count + [0.4 * body.radius])
         capsules = np.concatenate([segments, dots[:, None]], axis=1)
+        plan = _plan(self, arena.walls, arena.solids, arena.floor)
         out = np.empty((len(configurations), self.height, self.width, 3), np.uint8)
-        paint((capsules - corner) / pixel, radii / pixel, strips, TEXEL / pixel, _plan(self, arena), out)
+        paint((capsules - corner) / pixel, radii / pixel, strips, TEXEL / pixel, plan, out)
         add_noise(out, self.noise, rng)
         return out
 
@@ -117,7 +119,9 @@ def _strip(material: str, pixel: float) -> Float[np.ndarray, "texels 3"]:
 
 
 @lru_cache(maxsize=8)
-def _plan(eye: Overhead, arena: Arena) -> Float[np.ndarray, "height width 3"]:
+def _plan(
+    eye: Overhead, walls: tuple[Wall, ...], solids: tuple[Solid, ...], floor: str | tuple[int, int, int]
+) -> Float[np.ndarray, "height width 3"]:
     """Paint what does not move."""
     fine = max(2, -(-FINE // eye.height))
     pixel = eye.span / eye.width / fine
@@ -131,13 +135,13 @@ def _plan(eye: Overhead, arena: Arena) -> Float[np.ndarray, "height width 3"]:
         texels: np.ndarray = tile[i % tile.shape[0], j % tile.shape[1]]
         return texels
 
-    plan[:] = laid(arena.floor) if isinstance(arena.floor, str) else arena.floor
-    solids = [(shapely.Polygon(solid.outline), solid.sides[0]) for solid in arena.solids]
-    walls = [
+    plan[:] = laid(floor) if isinstance(floor, str) else floor
+    tops = [(shapely.Polygon(solid.outline), solid.sides[0]) for solid in solids]
+    rims = [
         (shapely.LineString([wall.start, wall.end]).buffer(WALL / 2, cap_style="square"), wall.material)
-        for wall in arena.walls
+        for wall in walls
     ]
-    for shape, material in [*solids, *walls]:
+    for shape, material in [*tops, *rims]:
         shapely.prepare(shape)
         inside = shapely.contains_xy(shape, x[None], y[:, None])
         plan[inside] = laid(material)[inside]
