@@ -131,6 +131,6 @@ def check_starts(body: Body, arena: Arena, configurations: np.ndarray) -> None:
     if len(bad):
         told = ", ".join(f"{value:g}" for value in configurations[bad[0]])
         raise ArenaError(
-            f"a body ({type(body).__name__} of radius {body.radius:g} m) cannot start at {names} = {told}: it "
-            "would touch something, leave the platform or the range of an axis; choose a start in free space"
+            f"a body ({type(body).__name__} of radius {body.radius:g} m) cannot start at {names} = {told}: "
+            "it would touch something, leave the platform or an axis's range; choose a start in free space"
         )
