@@ -22,8 +22,8 @@ def test_every_body_keeps_the_contract(name: str) -> None:
     at_large.begin(np.arange(20), starts)
     np.testing.assert_allclose(at_large.configurations, starts, atol=1e-12)
     velocities = body.velocities(RNG(1).uniform(-1, 1, (10, len(body.motors))))
-    for _ in range(30):
-        at_large.step(which, velocities, 0.2, [])
+    for _ in range(8):
+        at_large.step(which, velocities, 0.5, [])
         assert body.is_free(ROOM, at_large.configurations).all()
     there = at_large.configurations
     np.testing.assert_array_equal(there[1::2], wrapped(body, starts[1::2]))
