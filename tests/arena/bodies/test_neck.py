@@ -2,11 +2,12 @@ import numpy as np
 import pytest
 
 from arena.bodies.disc import Disc
-from arena.bodies.neck import Neck
+from arena.bodies.neck import ABOVE, DECK, Neck
 from arena.errors import ArenaError
 from arena.eye.base import see
 from arena.eye.camera import Camera
 from arena.rooms.arena import Arena
+from arena.rooms.materials import texture
 
 ROOM = Arena.load("furnished")
 EYE = Camera.panoramic(90, 20)
@@ -51,6 +52,10 @@ def test_the_deck_stays_where_the_base_is() -> None:
     np.testing.assert_array_equal(turned[: rows[0]], panned[: rows[0]])
     np.testing.assert_allclose(panned[rows].astype(int), np.roll(still[rows].astype(int), 7, axis=1), atol=1)
     assert still[rows].std() > 20
+    # All around the deck is its texture once: 113 texels of 1 cm, as far out as the row looks.
+    focal, below = 90 / (2 * np.pi), rows[-1] + 0.5 - 10
+    ring = texture(DECK)[:113, int(focal * ABOVE / below / 0.01)]
+    np.testing.assert_allclose(still[rows[-1]].mean(axis=0), ring.mean(axis=0), atol=1)
 
 
 def test_the_deck_moves_smoothly() -> None:
