@@ -1,6 +1,7 @@
 """The body: a disc with differential drive (two wheels), which walls stop."""
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -83,6 +84,16 @@ class Drive:
         self._x, self._y, self._heading, self.speed, self.turn, away = self._state.tolist()
         self.contact = None if math.isnan(away) else away
         return self.contact is not None
+
+    @property
+    def configuration(self) -> Pose:
+        """Its pose."""
+        return self.pose
+
+    def go(self, velocities: Sequence[float], dt: float) -> bool:
+        """Step at a speed (m/s) and a turn rate (rad/s) for dt (s): give whether something stopped it."""
+        speed, turn = velocities
+        return self.step(speed, turn, dt)
 
     def ahead(self, reach: float) -> float | None:
         """Look straight ahead from the centre: give the normal (rad) of what is within reach (m), or None."""
@@ -192,7 +203,9 @@ class Disc(Settings):
         """
         return 0.5 * (left + right), (right - left) / self.wheel_base
 
-    def place(self, arena: Arena, pose: Pose, rng: np.random.Generator | None = None) -> Drive:
+    def place(
+        self, arena: Arena, configuration: tuple[float, ...], rng: np.random.Generator | None = None
+    ) -> Drive:
         """Put the body into an arena; its slip is drawn from the generator, and without slip nothing is.
 
         Raises
@@ -202,5 +215,6 @@ class Disc(Settings):
         """
         if self.slip and rng is None:
             raise ArenaError(f"the wheels slip by {self.slip:g}; give `rng`, a numpy.random.Generator")
-        check_starts(self, arena, np.array([pose], dtype=float))
-        return Drive(self, arena, pose, rng)
+        check_starts(self, arena, np.array([configuration], dtype=float))
+        x, y, heading = configuration
+        return Drive(self, arena, (x, y, heading), rng)
