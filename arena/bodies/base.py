@@ -130,7 +130,7 @@ class Body(Protocol):
         Raises
         ------
         ArenaError
-            Where it cannot start.
+            Where it cannot start, and for slip without a generator.
         """
 
     def at_large(self, arena: Arena, count: int) -> AtLarge:
@@ -148,7 +148,7 @@ class Alone:
     ) -> None:
         start = np.array([configuration], float)
         check_starts(body, arena, start)
-        self._bodies, self._rngs = body.at_large(arena, 1), [np.random.default_rng(0) if rng is None else rng]
+        self._bodies, self._rngs = body.at_large(arena, 1), [] if rng is None else [rng]
         self._bodies.begin(_ONE, start)
 
     @property
@@ -179,6 +179,12 @@ def wrapped(body: Body, values: np.ndarray) -> np.ndarray:
 def joints_of(body: Body, configurations: np.ndarray) -> np.ndarray | None:
     """Give what poses do not tell: the configurations of a body, or None if these are its poses."""
     return None if body.axes == POSE else configurations
+
+
+def check_generator(slip: float, rng: np.random.Generator | None) -> None:
+    """Raise an `ArenaError` for motors that slip (a share) without a generator."""
+    if slip and rng is None:
+        raise ArenaError(f"the motors slip by {slip:g}; give `rng`, a numpy.random.Generator")
 
 
 def check_starts(body: Body, arena: Arena, configurations: np.ndarray) -> None:

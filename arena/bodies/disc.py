@@ -9,7 +9,16 @@ from jaxtyping import Bool, Float
 from pydantic import Field
 
 from arena.angles import wrap_angle
-from arena.bodies.base import POSE, TOLERANCE, Axis, Configurations, Segments, Unit, check_starts
+from arena.bodies.base import (
+    POSE,
+    TOLERANCE,
+    Axis,
+    Configurations,
+    Segments,
+    Unit,
+    check_generator,
+    check_starts,
+)
 from arena.bodies.motors import Motors, Rollers
 from arena.bodies.rolling import Limits, look_ahead, roll
 from arena.errors import ArenaError
@@ -213,8 +222,7 @@ class Disc(Settings):
         ArenaError
             For a pose that is not finite or where the body touches something, and slip without a generator.
         """
-        if self.slip and rng is None:
-            raise ArenaError(f"the wheels slip by {self.slip:g}; give `rng`, a numpy.random.Generator")
+        check_generator(self.slip, rng)
         check_starts(self, arena, np.array([configuration], dtype=float))
         x, y, heading = configuration
         return Drive(self, arena, (x, y, heading), rng)

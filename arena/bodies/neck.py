@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Int
 from pydantic import Field
 
 from arena.angles import wrap_angle
-from arena.bodies.base import POSE, Alone, Axis, Configurations, Segments, Unit
+from arena.bodies.base import POSE, Alone, Axis, Configurations, Segments, Unit, check_generator
 from arena.bodies.disc import Disc
 from arena.bodies.motors import Rollers
 from arena.errors import ArenaError
@@ -94,8 +94,9 @@ class Neck(Settings):
         Raises
         ------
         ArenaError
-            Where it cannot start.
+            Where it cannot start, and for slip without a generator.
         """
+        check_generator(self.base.slip, rng)
         return Alone(self, arena, configuration, rng)
 
     def at_large(self, arena: Arena, count: int) -> "Necks":
