@@ -33,6 +33,9 @@ FEWEST = 100
 """Fewer views than this have no shape to speak of."""
 MAJORITY = 0.5
 """Share of the neighbourhoods that must agree on the dimension."""
+ONE_SIDED = 5
+"""Neighbours that a view is joined to though it is none of theirs: those at the limits of joints look far for
+their last ones, and might find them across a fold of the manifold."""
 LANDMARKS = 400
 """On which the cocycles of the loops are found, as many as the loops are counted on."""
 
@@ -196,7 +199,7 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
             loaded._code = ViewCode(loaded.components).restore(loaded.eye_, shape, state)
             loaded.indices_, loaded.codes_ = arrays["indices"], arrays["codes"]
             loaded.spectrum_, loaded.coordinates_ = arrays["spectrum"], arrays.get("coordinates")
-            found = {
+            found: dict[str, Any] = {
                 name: tuple(value) if isinstance(value, list) else value
                 for name, value in learnt["betti"].items()
             }
@@ -225,12 +228,18 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
         return "; ".join(said)
 
     def _locate(self) -> Float[np.ndarray, "kept coordinates"]:
-        graph = neighbour_graph(self.codes_)
-        phases = np.empty((len(self.codes_), 0))
+        codes = self.codes_
+        graph = neighbour_graph(codes, one_sided=ONE_SIDED)
+        phases = np.empty((len(codes), 0))
         if self.loops_:
             phases = circular_coordinates(graph, self.loops_, landmarks=LANDMARKS, seed=self.seed).phases
             starts, ends = sp.triu(graph, 1).nonzero()
-            turns = wrap_angle(phases[ends] - phases[starts])
+            turns = np.nan_to_num(wrap_angle(phases[ends] - phases[starts]))
             phases = wrap_angle(phases @ short_basis(turns.T @ turns).T)
-        others = heights(self.codes_, phases, self.dimension_ - self.loops_, seed=self.seed)
-        return np.hstack(relaxed(self.codes_, phases, others))
+        count = self.dimension_ - self.loops_
+        others = heights(codes, phases, count, one_sided=ONE_SIDED, seed=self.seed)
+        # A few that none counts among its nearest lie in pieces of their own.
+        lost = np.isnan(np.hstack([phases, others])).any(axis=1)
+        if lost.any():
+            phases[lost], others[lost] = read_between(codes[~lost], phases[~lost], others[~lost], codes[lost])
+        return np.hstack(relaxed(codes, phases, others))

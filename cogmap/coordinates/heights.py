@@ -16,6 +16,7 @@ def heights(
     phases: Float[np.ndarray, "points loops"],
     count: int,
     *,
+    one_sided: int | None = None,
     seed: int = 0,
 ) -> Float[np.ndarray, "points heights"]:
     """Find as many coordinates as there are degrees of freedom beside the loops, each of deviation 1.
@@ -32,12 +33,14 @@ def heights(
         rad, around each loop.
     count
         How many.
+    one_sided
+        Of the neighbour graph.
     seed
         Draws the landmarks.
     """
     if not count:
         return np.empty((len(codes), 0))
-    isomap = LandmarkIsomap(2 * phases.shape[1] + count, seed=seed).fit(codes)
+    isomap = LandmarkIsomap(2 * phases.shape[1] + count, one_sided=one_sided, seed=seed).fit(codes)
     known = isomap.pieces_.labels == 0
     turns = [
         phases[known] @ np.array(times)

@@ -1,4 +1,4 @@
-"""The code of views by whatever eye: receptors that suit it, then principal components by Hebbian learning."""
+"""The code of views by whatever eye: receptors that suit it, then components by Hebbian learning."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ STEPS = 260
 class ViewCode:
     """Receptors and principal components, by which views that differ little in pose lie near each other.
 
-    A panorama is seen by the retina of `CognitiveMap` (`neurons.layers.retina.Retina`), whose receptive fields
-    run around the seam; any other picture as a small blurred one (`image_codes`), because gain control would
+    A panorama is seen by the retina (`neurons.layers.retina.Retina`), whose receptive fields run around the
+    seam; any other picture as a small blurred one (`image_codes`), because gain control would
     amplify the still background that a fixed camera sees most of. Components are Sanger's in both cases.
 
     Parameters
