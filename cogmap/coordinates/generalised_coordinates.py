@@ -113,7 +113,9 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
         memory = EvenMemory(self.memory).partial_fit(np.arange(len(codes)), codes)
         self.eye_, self.indices_, self.codes_ = self._code.eye_, memory.indices_.copy(), memory.codes_.copy()
         self.dimension_, self.vote_, self.spectrum_ = local_dimension(self.codes_)
-        self.betti_ = unless_lower_is_unresolved(betti(self.codes_, mutual_check=True, seed=self.seed))
+        self.betti_ = unless_lower_is_unresolved(
+            betti(self.codes_, check_one_sided=ONE_SIDED, seed=self.seed)
+        )
         self.reason_ = self._doubts()
         self.coordinates_ = self._locate() if self.located_ else None
         return self
