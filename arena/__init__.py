@@ -3,11 +3,17 @@
 from contextlib import suppress
 
 from arena.acting import Journeys, journeys
+from arena.bodies.arm import Arm
+from arena.bodies.base import Axis, Body
 from arena.bodies.disc import Disc
 from arena.bodies.heavy_disc import HeavyDisc
+from arena.bodies.neck import Neck
+from arena.bodies.rail import Rail
+from arena.bodies.turntable import Turntable
 from arena.errors import ArenaError
 from arena.exploration import explore
 from arena.eye.camera import Camera
+from arena.eye.overhead import Overhead
 from arena.motions.babble import Babble
 from arena.motions.base import Motion, Walk
 from arena.motions.brownian import Brownian
@@ -24,12 +30,11 @@ from arena.rooms.parts import Block, Box, Pillar, Source, Wall
 from arena.smell.nose import Nose
 from arena.smell.odour import OdourField
 
-Body = Disc
-"""The body unless told; the contract that bodies fulfil, once there are others."""
-
 __all__ = [
     "Arena",
     "ArenaError",
+    "Arm",
+    "Axis",
     "Babble",
     "Block",
     "Body",
@@ -43,15 +48,19 @@ __all__ = [
     "Journeys",
     "Light",
     "Motion",
+    "Neck",
     "Nose",
     "OdourField",
+    "Overhead",
     "Pillar",
     "Policy",
+    "Rail",
     "Recording",
     "Replay",
     "Rotation",
     "Source",
     "Track",
+    "Turntable",
     "Walk",
     "Wall",
     "explore",

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from arena.bodies.base import Body, Configurations, joints_of
 from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.explorers import Explorers, Observation
-from arena.eye.base import Eye
+from arena.eye.base import AnyEye
 from arena.motions.policy import Policy
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
@@ -26,10 +27,12 @@ class Step(NamedTuple):
     """A turn of the loop."""
 
     poses: Float[np.ndarray, "explorers 3"]
-    """Where they looked (m, m, rad): the truth."""
+    """From where they looked (m, m, rad): the truth."""
+    configurations: Configurations
+    """Where they were on the body's axes: the truth."""
     sensed: Observation
     """What they sensed there."""
-    commands: Float[np.ndarray, "explorers 2"]
+    commands: Float[np.ndarray, "explorers motors"]
     """What the policy said; NaN for those that have stopped."""
     touched: Bool[np.ndarray, " explorers"]
     """Whether something stopped them while they obeyed: the truth."""
@@ -43,27 +46,28 @@ def act_and_look(explorers: Explorers, policy: Policy, dt: float) -> Iterator[St
     Raises
     ------
     ArenaError
-        For a dt that is not positive, and commands that are not two numbers for each.
+        For a dt that is not positive, and commands that are not a number for each motor of each.
     """
     if not 0 < dt < math.inf:
         raise ArenaError(f"dt is {dt} s; give a positive time from a decision to the next")
     everyone = going = np.arange(explorers.count)
+    wanted = explorers.count, len(explorers.body.motors)
     while len(going):
-        poses, sensed = explorers.poses(everyone), explorers.sense(going)
+        there, poses, sensed = explorers.configurations(everyone), explorers.poses(everyone), explorers.sense(going)
         told = np.asarray(policy(sensed), float)
-        if told.shape != (explorers.count, 2):
-            raise ArenaError(f"a policy gave commands of shape {told.shape} for {explorers.count} explorers")
+        if told.shape != wanted:
+            raise ArenaError(f"a policy gave commands of shape {told.shape} for (explorers, motors) = {wanted}")
         going = going[~np.isnan(told[going]).all(axis=1)]
-        commands = np.full((explorers.count, 2), math.nan)
+        commands = np.full(wanted, math.nan)
         commands[going] = told[going]
         if not np.isfinite(commands[going]).all():
             raise ArenaError(
-                "a policy gave a command that is not finite; give two numbers, or two NaN to stop"
+                "a policy gave a command that is not finite; give a number for each motor, or NaN for all to stop"
             )
         explorers.act(going, explorers.body.velocities(commands[going]), dt)
         touched = np.zeros(explorers.count, bool)
         touched[going] = explorers.touched(going)
-        yield Step(poses, sensed, commands, touched)
+        yield Step(poses, there, sensed, commands, touched)
 
 
 class Journeys(NamedTuple):
@@ -72,23 +76,25 @@ class Journeys(NamedTuple):
     times: Float[np.ndarray, " looks"]
     """s; one more than steps."""
     poses: Float[np.ndarray, "looks explorers 3"]
-    """x, y in m and heading in rad; an explorer that has stopped stays."""
-    commands: Float[np.ndarray, "steps explorers 2"]
+    """x, y in m and heading in rad, of the eye; an explorer that has stopped stays."""
+    commands: Float[np.ndarray, "steps explorers motors"]
     """As the policy gave them; NaN from where it has stopped."""
     touched: Bool[np.ndarray, "steps explorers"]
-    """Whether a wall or the platform's border stopped the step."""
+    """Whether something stopped the step: a wall, the platform's border, the end of an axis."""
     steps: Int[np.ndarray, " explorers"]
     """How many commands each has obeyed: the row of `poses` from which on it stands still."""
+    joints: Float[np.ndarray, "looks explorers axes"] | None = None
+    """Where the body was on its axes, row by row as `poses`; None for a disc, which is where its pose says."""
 
 
 def journeys(
     arena: Arena,
     policy: Policy,
-    camera: Eye,
-    starts: Float[np.ndarray, "explorers 3"],
+    camera: AnyEye,
+    starts: Float[np.ndarray, "explorers axes"],
     *,
     nose: Nose = Nose(),
-    body: Disc = Disc(),
+    body: Body = Disc(),
     dt: float = DT,
     most_steps: int,
     seed: int = 0,
@@ -102,7 +108,7 @@ def journeys(
     arena, policy, camera, nose, body
         The room, what steers, and the animal. The policy is asked about all explorers at every step.
     starts
-        x, y (m) and heading (rad) of each.
+        Where each is on the body's axes: x, y (m) and heading (rad) of a disc, the joints of an arm.
     dt
         Time from a decision to the next, s.
     most_steps
@@ -115,8 +121,8 @@ def journeys(
     ArenaError
         For a start that is not free, a count or seed out of range, and commands that mean nothing.
     """
-    if starts.ndim != 2 or starts.shape[1] != 3 or not len(starts):
-        raise ArenaError(f"the starts are of shape {starts.shape}; give x, y (m) and heading (rad) a row")
+    if not len(starts):
+        raise ArenaError("there are no starts; give one for each explorer")
     if most_steps < 1 or seed < 0:
         raise ArenaError(
             f"most_steps is {most_steps} and seed is {seed}; give at least 1 and no negative seed"
@@ -124,10 +130,10 @@ def journeys(
     everyone = np.arange(len(starts))
     explorers = Explorers(arena, camera, nose=nose, body=body, count=len(starts))
     rngs = [np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(len(starts))]
-    explorers.begin(everyone, [(x, y, heading) for x, y, heading in starts.tolist()], rngs)
+    explorers.begin(everyone, [tuple(start) for start in starts.tolist()], rngs)
     loop = islice(act_and_look(explorers, policy, dt), most_steps)
-    gone = [(step.poses, step.commands, step.touched) for step in loop]
-    poses, commands, touched = (np.array(rows) for rows in zip(*gone, strict=True))
+    gone = [(step.poses, step.configurations, step.commands, step.touched) for step in loop]
+    poses, there, commands, touched = (np.array(rows) for rows in zip(*gone, strict=True))
     moving = np.isfinite(commands[:, :, 0])
     steps = int(moving.any(axis=1).sum())
     return Journeys(
@@ -136,4 +142,5 @@ def journeys(
         commands[:steps],
         touched[:steps],
         moving.sum(axis=0),
+        joints_of(body, np.concatenate([there[:steps], explorers.configurations(everyone)[None]])),
     )

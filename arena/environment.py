@@ -11,16 +11,19 @@ import numpy as np
 from jaxtyping import Float, UInt8
 from pydantic import Field
 
-from arena.bodies.disc import Disc, Drive, Pose
+from arena.bodies.base import POSE, Body
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
-from arena.explorers import Observation
-from arena.eye.base import Eye
+from arena.explorers import Explorers, Observation
+from arena.eye.base import AnyEye
 from arena.eye.camera import Camera
-from arena.motions.locomotion import random_start
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 from arena.smell.nose import Nose
 from arena.topview import TopView
+
+_ONE = np.zeros(1, int)
+_COUNTS = ("nothing", "one number", "two numbers", "three numbers", "four numbers")
 
 Reward = Callable[[Observation, Observation], float]
 """Judges a step by what was sensed before and after it."""
@@ -67,13 +70,15 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
     """An animal that sees and smells a room: `gymnasium.make("arena/Explorer-v0", arena="furnished")`.
 
     An observation is `{"view": (height, width, 3) uint8, "odour": (odorants,) float32}`, concentrations as
-    the nose smells them. An action is two numbers in [−1, 1]: speed over `body.max_speed` and turn rate over
-    `body.max_turn`, or the speeds of the left and the right wheel over `body.max_speed`; what is too much the
-    body cuts. No state ends an episode; gymnasium truncates it after `max_episode_steps` (2000).
+    the nose smells them. An action is a number in [−1, 1] for each motor: of a disc speed over
+    `body.max_speed` and turn rate over `body.max_turn`, or the speeds of the left and the right wheel over
+    `body.max_speed`; what is too much the body cuts. No state ends an episode; gymnasium truncates it after
+    `max_episode_steps` (2000).
 
-    `reset(options={"pose": (x, y, heading)})` chooses the start, which is drawn from free space otherwise.
-    The truth is in `info` only: `pose` (x, y in m, heading in rad) and `touched`, whether the last step was
-    stopped by a wall or the platform's border.
+    `reset(options={"pose": (x, y, heading)})` chooses the start, which is drawn from free space otherwise;
+    of a body with joints `options={"joints": (...)}`, where it is on its axes. The truth is in `info` only:
+    `pose` (x, y in m, heading in rad, of the eye), `joints` if there are any, and `touched`, whether the
+    last step was stopped: by a wall, the platform's border, the end of an axis.
 
     Parameters
     ----------
@@ -82,7 +87,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
     camera, nose, body
         The animal.
     control
-        "velocity" or "wheels".
+        "velocity" or, of a disc, "wheels".
     reward
         Judges a step by the observations before and after it; the climb of the first odour unless told.
     dt
@@ -102,9 +107,9 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         self,
         arena: Arena | str | Path,
         *,
-        camera: Eye = Camera.panoramic(92, 15),
+        camera: AnyEye = Camera.panoramic(92, 15),
         nose: Nose = Nose(),
-        body: Disc = Disc(),
+        body: Body = Disc(),
         control: Literal["velocity", "wheels"] = "velocity",
         reward: Reward = OdourClimbed(),
         dt: float = 0.05,
@@ -114,6 +119,8 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
             raise ArenaError(f"dt is {dt} s; give a positive length of a step")
         if control not in ("velocity", "wheels"):
             raise ArenaError(f"control is {control!r}; choose 'velocity' or 'wheels'")
+        if control == "wheels" and not isinstance(body, Disc):
+            raise ArenaError(f"a {type(body).__name__} has no two wheels; choose the control 'velocity'")
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ArenaError(f"render_mode is {render_mode!r}; choose 'rgb_array' or None")
         self.arena = arena if isinstance(arena, Arena) else Arena.load(arena)
@@ -125,7 +132,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         self.dt = dt
         self.render_mode = render_mode
         self.metadata = {**self.metadata, "render_fps": max(1, round(1 / dt))}
-        self.action_space = gymnasium.spaces.Box(-1, 1, (2,), np.float32)
+        self.action_space = gymnasium.spaces.Box(-1, 1, (len(body.motors),), np.float32)
         odorants, smelt = len(self.arena.sources), np.finfo(np.float32)
         self.observation_space = gymnasium.spaces.Dict(  # type: ignore[assignment]
             {
@@ -134,52 +141,68 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
             }
         )
         self._top = TopView(self.arena)
-        self._drive: Drive | None = None
-        self._now = np.zeros(1)
+        self._one = Explorers(self.arena, camera, nose=nose, body=body, count=1)
+        self._sensed: Observation | None = None
 
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Begin an episode, at `options["pose"]` or anywhere in free space."""
+        """Begin an episode, where the options say or anywhere in free space."""
         super().reset(seed=seed)
-        self._drive = self.body.place(self.arena, self.starting_pose(options or {}), self.np_random)
-        self._sniffer = self.nose.sniffer(len(self.arena.sources), self.np_random)
-        self._now[0] = 0.0
+        self._one.begin(_ONE, [self.start(options or {})], [self.np_random])
         self._trail: list[tuple[float, float]] = []
-        return self._sense(self._drive, touched=False)
+        return self._sense()
 
-    def starting_pose(self, options: Mapping[str, Any]) -> Pose:
-        """Read the options of `reset`, or draw a pose from free space."""
-        return _start(options) or random_start(self.arena, self.body, self.np_random)
+    def start(self, options: Mapping[str, Any]) -> tuple[float, ...]:
+        """Read the options of `reset`, or draw a start from free space."""
+        drawn = _start(options, self.body)
+        return drawn or tuple(self.body.sample_free(self.arena, 1, self.np_random)[0].tolist())
+
+    def velocities(self, actions: Float[np.ndarray, "some motors"]) -> Float[np.ndarray, "some motors"]:
+        """Turn actions into what the motors should do, m/s or rad/s.
+
+        Raises
+        ------
+        ArenaError
+            For actions that are not finite.
+        """
+        if not np.isfinite(actions).all():
+            raise ArenaError("some actions are not finite; give numbers between -1 and 1")
+        if self.control == "wheels" and isinstance(self.body, Disc):
+            wheels = (actions * self.body.max_speed).tolist()
+            return np.array([self.body.from_wheels(left, right) for left, right in wheels]).reshape(-1, 2)
+        return self.body.velocities(actions)
+
+    def truth(self, explorers: Explorers, which: np.ndarray) -> dict[str, np.ndarray]:
+        """Tell where these are, and whether something stopped them."""
+        known = {"pose": explorers.poses(which), "touched": explorers.touched(which)}
+        return known if self.body.axes == POSE else {**known, "joints": explorers.configurations(which)}
 
     def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Obey for `dt` seconds, then look and smell."""
-        if self._drive is None:
-            raise ArenaError("the animal is nowhere yet; call reset() before the first step()")
-        command = np.asarray(action)
-        if command.shape != (2,):
-            raise ArenaError(
-                f"the action has shape {command.shape}; {self.control} takes two numbers between -1 and 1"
-            )
-        first, second = command.tolist()
-        if self.control == "wheels":
-            speed, turn = self.body.from_wheels(first * self.body.max_speed, second * self.body.max_speed)
-        else:
-            speed, turn = first * self.body.max_speed, second * self.body.max_turn
-        touched = self._drive.step(speed, turn, self.dt)
-        self._now[0] += self.dt
         before = self._sensed
-        after, info = self._sense(self._drive, touched=touched)
+        if before is None:
+            raise ArenaError("the animal is nowhere yet; call reset() before the first step()")
+        command = np.asarray(action, float)
+        if command.shape != self.action_space.shape:
+            raise ArenaError(
+                f"the action has shape {command.shape}; {self.control} takes {_COUNTS[len(self.body.motors)]} "
+                "between -1 and 1"
+            )
+        self._one.act(_ONE, self.velocities(command[None]), self.dt)
+        after, info = self._sense()
         return after, self.reward(before, after), False, False, info
 
     def render(self) -> UInt8[np.ndarray, "height width 3"] | None:
         """Draw what the animal sees beside where it is."""
         if self.render_mode is None:
             return None
-        if self._drive is None:
+        if self._sensed is None:
             raise ArenaError("the animal is nowhere yet; call reset() before render()")
         view = self._sensed["view"]
-        top = self._top.draw(self._drive.pose, self.body.radius, np.array(self._trail))
+        there, pose = self._one.configurations(_ONE), self._one.poses(_ONE)[0].tolist()
+        links = None if self.body.axes == POSE else self.body.segments(there)[0]
+        top = self._top.draw(tuple(pose), self.body.radius, np.array(self._trail), links)
         rows = len(top)
         # A strip is many times as wide as high: no more than two squares of the frame.
         scale = min(rows / view.shape[0], 2 * rows / view.shape[1])
@@ -190,25 +213,26 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         frame[above : above + size[1]] = shown
         return np.hstack([frame, top])
 
-    def _sense(self, drive: Drive, *, touched: bool) -> tuple[Observation, dict[str, Any]]:
-        pose = np.array([drive.pose])
-        view = self.camera.render(self.arena, pose, rng=self.np_random)[0]
-        odour = self._sniffer.smell(self.arena.odours.concentration(pose[:, :2]), self._now)[0]
+    def _sense(self) -> tuple[Observation, dict[str, Any]]:
+        self._sensed = {name: values[0] for name, values in self._one.sense(_ONE).items()}
+        known = {name: values[0] for name, values in self.truth(self._one, _ONE).items()}
         if self.render_mode is not None:
-            self._trail.append(drive.pose[:2])
-        self._sensed = {"view": view, "odour": odour}
-        return self._sensed, {"pose": pose[0], "touched": touched}
+            self._trail.append(tuple(known["pose"][:2].tolist()))
+        return self._sensed, {**known, "touched": bool(known["touched"])}
 
 
-def _start(options: Mapping[str, Any]) -> Pose | None:
+def _start(options: Mapping[str, Any], body: Body) -> tuple[float, ...] | None:
     """Read the options of `Explorer.reset`."""
-    unknown = options.keys() - {"pose"}
+    name, wanted = "pose" if body.axes == POSE else "joints", ", ".join(axis.name for axis in body.axes)
+    unknown = options.keys() - {name}
     if unknown:
-        raise ArenaError(f"unknown options {sorted(unknown)}; the only one is 'pose', (x, y, heading)")
-    if "pose" not in options:
+        raise ArenaError(f"unknown options {sorted(unknown)}; the only one is {name!r}, ({wanted})")
+    if name not in options:
         return None
     try:
-        x, y, heading = (float(part) for part in options["pose"])
+        start = tuple(float(part) for part in options[name])
     except (TypeError, ValueError):
-        raise ArenaError(f"the option pose is {options['pose']!r}; give x, y (m) and heading (rad)") from None
-    return x, y, heading
+        start = ()
+    if len(start) != len(body.axes):
+        raise ArenaError(f"the option {name} is {options[name]!r}; give {wanted}, in m and rad")
+    return start

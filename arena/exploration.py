@@ -15,13 +15,13 @@ import numpy as np
 from tqdm import tqdm
 
 from arena.acting import DT, act_and_look
-from arena.bodies.disc import Disc, Pose
+from arena.bodies.base import Body, Configurations, joints_of
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.explorers import Explorers
-from arena.eye.base import Eye
-from arena.eye.camera import Camera, Images, Poses
+from arena.eye.base import AnyEye, see
+from arena.eye.camera import Camera, Images
 from arena.motions.base import Motion, Striding, Walk, join
-from arena.motions.locomotion import random_start
 from arena.motions.policy import Policy
 from arena.recordings import storage
 from arena.recordings.origin import origin, unlike
@@ -35,13 +35,13 @@ from arena.steered import of_one, write_down
 def explore(
     arena: Arena,
     motion: Motion | Policy,
-    camera: Eye,
+    camera: AnyEye,
     *,
     nose: Nose = Nose(),
-    body: Disc = Disc(),
+    body: Body = Disc(),
     views: int | None = None,
     seed: int = 0,
-    start: Pose | None = None,
+    start: tuple[float, ...] | None = None,
     dt: float | None = None,
     out: str | Path | None = None,
     progress: bool = False,
@@ -55,14 +55,14 @@ def explore(
     Parameters
     ----------
     arena, motion, camera, nose, body
-        The room, how to move, and the animal.
+        The room, how to move, and the animal. The recording of a body with joints has them, for scoring.
     views
         How many to take; None takes what the motion does by default, or all until the policy stops.
     seed
         Varies the walk, slip and the noise of the nose and the camera, never the room.
     start, dt
-        Of a policy: its first pose, drawn from free space when None, and the time from a view to the next, s,
-        0.2 when None. A motion has its own.
+        Of a policy: where the body starts on its axes, drawn from what is free when None, and the time from a
+        view to the next, s, 0.2 when None. A motion has its own.
     out
         Folder to stream to, 256 views at a time. The same call after a kill goes on where it stopped and ends
         with the same bits, on every x86-64 processor with AVX2 and the same versions (a `Chemotaxis` only in
@@ -87,10 +87,16 @@ def explore(
         told |= {"motion": {"kind": name, "start": start, "dt": dt}, "walk": {}, "origin": origin()}
         rng = np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0])
         one = Explorers(arena, camera, nose=nose, body=body, count=1)
-        one.begin(np.zeros(1, int), [random_start(arena, body, rng) if start is None else start], [rng])
-        steps = islice(act_and_look(one, of_one(motion), dt), views)
+        begin = tuple(body.sample_free(arena, 1, rng)[0].tolist()) if start is None else start
+        one.begin(np.zeros(1, int), [begin], [rng])
+        steps = islice(act_and_look(one, of_one(motion, len(body.motors)), dt), views)
         counted = tqdm(steps, total=views, unit="view", disable=not progress)
-        return write_down(iter(counted), dt, path, (camera.height, camera.width, 3), told)
+        return write_down(iter(counted), dt, path, (camera.height, camera.width, 3), told, body)
+    if not (isinstance(body, Disc) or getattr(motion, "any_body", False)):
+        raise ArenaError(
+            f"{type(motion).__name__} steers a disc, and the body is of kind {type(body).__name__}; "
+            "let it babble, replay a path or go by a policy"
+        )
     if start is not None or dt is not None:
         raise ArenaError(f"start and dt are of a policy; {type(motion).__name__} has its own")
     views = motion.default_views if views is None else views
@@ -100,7 +106,7 @@ def explore(
     if path is not None and begun is not None and not begun.missing:
         return Recording.open(path)
     walk_rng, nose_rng = (np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(2))
-    crew = _Crew(arena, camera, seed, progress)
+    crew = _Crew(arena, camera, body, seed, progress)
     if path is not None or views is None or not isinstance(motion, Striding):
         walk = motion.walk(arena, body, views, walk_rng)
         strides, views = iter([walk]), len(walk.times)
@@ -108,12 +114,15 @@ def explore(
         strides = motion.strides(arena, body, views, walk_rng)
     if path is None:
         walk, images = crew.see(strides, views)
+    poses = body.camera_poses(walk.poses)
     columns: dict[str, Any] = {
         "times": walk.times,
-        "odours": nose.smell(arena.odours.concentration(walk.poses[:, :2]), walk.times, nose_rng),
-        "poses": walk.poses,
-        **({} if walk.commands is None else {"commands": walk.commands}),
+        "odours": nose.smell(arena.odours.concentration(poses[:, :2]), walk.times, nose_rng),
+        "poses": poses,
+        "commands": walk.commands,
+        "joints": joints_of(body, walk.poses),
     }
+    columns = {name: values for name, values in columns.items() if values is not None}
     attributes |= {"walk": dict(walk.notes), "origin": origin()}
     if path is None:
         return Recording(views=images, **columns, attributes=attributes)
@@ -174,37 +183,38 @@ class _Crew:
     """Those who paint: threads of which each takes a shard. A shard has noise of its own, and comes alone."""
 
     arena: Arena
-    camera: Eye
+    camera: AnyEye
+    body: Body
     seed: int
     progress: bool
 
     def see(self, strides: Iterable[Walk], views: int) -> tuple[Walk, Images]:
         """Paint what is seen on a walk while it goes on."""
         images = np.empty((views, self.camera.height, self.camera.width, 3), np.uint8)
-        poses, waiting, taken, there = np.empty((views, 3)), shards(views), list[Walk](), 0
+        way = np.empty((views, len(self.body.axes)))
+        waiting, taken, there = shards(views), list[Walk](), 0
 
         def paint(rows: slice, rng: np.random.Generator) -> None:
-            if isinstance(self.camera, Camera):
-                self.camera.render(self.arena, poses[rows], out=images[rows], rng=rng)
-            else:
-                images[rows] = self.camera.render(self.arena, poses[rows], rng=rng)
+            see(self.camera, self.arena, self.body, way[rows], images[rows], rng)
 
         with self._at_work(paint, views) as give:
             for stride in strides:
                 taken.append(stride)
-                poses[there : there + len(stride.poses)] = stride.poses
+                way[there : there + len(stride.poses)] = stride.poses
                 there += len(stride.poses)
                 while waiting and waiting[0].stop <= there:
                     give(waiting.pop(0))
         return join(taken), images
 
-    def record(self, poses: Poses, folder: Path, missing: list[slice]) -> None:
+    def record(self, way: Configurations, folder: Path, missing: list[slice]) -> None:
         """Paint what is missing of an array on disk."""
 
         def paint(rows: slice, rng: np.random.Generator) -> None:
-            write_shard(folder, rows, self.camera.render(self.arena, poses[rows], rng=rng))
+            images = np.empty((rows.stop - rows.start, self.camera.height, self.camera.width, 3), np.uint8)
+            see(self.camera, self.arena, self.body, way[rows], images, rng)
+            write_shard(folder, rows, images)
 
-        with self._at_work(paint, len(poses)) as give:
+        with self._at_work(paint, len(way)) as give:
             for rows in missing:
                 give(rows)
 

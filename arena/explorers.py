@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from arena.angles import wrap_angle
-from arena.bodies.disc import Disc, Pose
-from arena.bodies.motors import Motors
-from arena.bodies.rolling import CONTACT
-from arena.eye.base import Eye
-from arena.eye.camera import Camera, Images
+from arena.bodies.base import Body, Configurations, check_starts
+from arena.eye.base import AnyEye, see
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose, Sniffers
 
@@ -36,36 +31,38 @@ class Explorers:
         How many.
     """
 
-    def __init__(self, arena: Arena, camera: Eye, *, nose: Nose, body: Disc, count: int) -> None:
+    def __init__(self, arena: Arena, camera: AnyEye, *, nose: Nose, body: Body, count: int) -> None:
         self.arena, self.camera, self.body, self.count = arena, camera, body, count
-        self._states = np.full((count, 6), math.nan)
+        self._bodies = body.at_large(arena, count)
         self._times = np.zeros(count)
         self._rngs: list[np.random.Generator] = [np.random.default_rng(0)] * count
-        self._motors = Motors(body, arena, count)
         self._sniffers = Sniffers(nose, count, len(arena.sources))
         self._sensed: Observation = {
             "view": np.zeros((count, camera.height, camera.width, 3), np.uint8),
             "odour": np.zeros((count, len(arena.sources)), np.float32),
         }
 
-    def begin(self, which: Which, starts: Sequence[Pose], rngs: Sequence[np.random.Generator]) -> None:
-        """Put these at their starts, at rest.
+    def begin(self, which: Which, starts: Sequence[tuple[float, ...]], rngs: Sequence[np.random.Generator]) -> None:
+        """Put these at their starts on the body's axes, at rest.
 
         Raises
         ------
         ArenaError
             For a start that is not free.
         """
-        for k, start, rng in zip(which.tolist(), starts, rngs, strict=True):
-            self.body.place(self.arena, start, rng)
-            self._states[k], self._rngs[k] = (*start, 0.0, 0.0, math.nan), rng
+        if not len(which):
+            return
+        there = np.array(starts, float)
+        check_starts(self.body, self.arena, there)
+        for k, rng in zip(which.tolist(), rngs, strict=True):
+            self._rngs[k] = rng
         self._times[which] = 0.0
-        self._motors.begin(which)
+        self._bodies.begin(which, there)
         self._sniffers.begin(which)
 
-    def act(self, which: Which, velocities: Float[np.ndarray, "some 2"], dt: float) -> None:
-        """Let these obey speeds (m/s) and turn rates (rad/s) for dt (s); the others stay where they are."""
-        self._motors.move(self._states, which, velocities, dt, self._generators(which))
+    def act(self, which: Which, velocities: Float[np.ndarray, "some motors"], dt: float) -> None:
+        """Let the motors of these obey m/s or rad/s for dt (s); the others stay where they are."""
+        self._bodies.step(which, velocities, dt, self._generators(which))
         self._times[which] += dt
 
     def sense(self, which: Which) -> Observation:
@@ -80,28 +77,23 @@ class Explorers:
         return self._sensed
 
     def poses(self, which: Which) -> Float[np.ndarray, "some 3"]:
-        """Tell where these are (m, m, rad): the truth."""
-        states = self._states[which]
-        return np.column_stack([states[:, :2], wrap_angle(states[:, 2])])
+        """Tell from where these see and smell (m, m, rad): the truth."""
+        return self.body.camera_poses(self.configurations(which))
+
+    def configurations(self, which: Which) -> Configurations:
+        """Tell where these are, on the body's axes: the truth."""
+        return self._bodies.configurations[which]
 
     def touched(self, which: Which) -> Bool[np.ndarray, " some"]:
-        """Tell whether a wall or the platform's border stopped these in their last step: the truth."""
-        stopped: np.ndarray = np.isfinite(self._states[which, CONTACT])
-        return stopped
+        """Tell whether something stopped these in their last step: the truth."""
+        return self._bodies.touched[which]
 
     def _sense(self, which: Which) -> Observation:
-        poses, rngs = self.poses(which), self._generators(which)
-        concentrations = self.arena.odours.concentration(poses[:, :2])
-        view = self._look(poses, rngs)
+        there, rngs = self.configurations(which), self._generators(which)
+        concentrations = self.arena.odours.concentration(self.body.camera_poses(there)[:, :2])
+        view = np.empty((len(there), self.camera.height, self.camera.width, 3), np.uint8)
+        see(self.camera, self.arena, self.body, there, view, rngs)
         return {"view": view, "odour": self._sniffers.smell(which, concentrations, self._times[which], rngs)}
-
-    def _look(self, poses: Float[np.ndarray, "some 3"], rngs: list[np.random.Generator]) -> Images:
-        if isinstance(self.camera, Camera):
-            return self.camera.render(self.arena, poses, rng=rngs)
-        views = np.empty((len(poses), self.camera.height, self.camera.width, 3), np.uint8)
-        for view, pose, rng in zip(views, poses[:, None], rngs, strict=True):
-            view[:] = self.camera.render(self.arena, pose, rng=rng)[0]
-        return views
 
     def _generators(self, which: Which) -> list[np.random.Generator]:
         return [self._rngs[k] for k in which.tolist()]

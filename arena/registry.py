@@ -1,5 +1,6 @@
 """Registry: things of one kind, one file each, found by themselves in a package and its plugins."""
 
+import inspect
 import pkgutil
 from collections.abc import Callable, Iterator
 from importlib import import_module
@@ -49,12 +50,12 @@ def named_by_file(package: str, pick: Callable[[ModuleType], T | None]) -> dict[
 
 
 def settings_with(method: str) -> Callable[[ModuleType], Callable[..., Any] | None]:
-    """Pick the settings that a module defines itself and that have a method."""
+    """Pick the settings that a module defines itself, with no method left open, and that have this one."""
 
     def pick(module: ModuleType) -> Callable[..., Any] | None:
         kinds = (value for value in vars(module).values() if isinstance(value, type))
         mine = (kind for kind in kinds if issubclass(kind, Settings) and kind.__module__ == module.__name__)
-        return next((kind for kind in mine if hasattr(kind, method)), None)
+        return next((kind for kind in mine if hasattr(kind, method) and not inspect.isabstract(kind)), None)
 
     return pick
 

@@ -21,7 +21,7 @@ class TopView:
     """A map of a room, on which a body and the way it came can be drawn.
 
     Walls and solids are lines in the mean colour of their material, the platform is light, odour sources are
-    green rings, the body is a red disc with a line ahead.
+    green rings, the body is red with a line where its eye looks.
 
     Parameters
     ----------
@@ -36,16 +36,26 @@ class TopView:
         self._height = height
 
     def draw(
-        self, pose: Pose, radius: float, trail: Float[np.ndarray, "points 2"]
+        self,
+        pose: Pose,
+        radius: float,
+        trail: Float[np.ndarray, "points 2"],
+        links: Float[np.ndarray, "links 2 2"] | None = None,
     ) -> UInt8[np.ndarray, "height width 3"]:
-        """Draw a body of this radius (m) at a pose (m, m, rad), and the points (m) that it has passed."""
+        """Draw a body of this radius (m) by its pose (m, m, rad), its links (m) and the points (m) it passed."""
         picture = self._room.copy()
         blue, red, white = (70, 90, 160), (214, 69, 65), (255, 255, 255)
         cv2.polylines(picture, [self._pixels(trail)], False, blue, 1, cv2.LINE_AA, _SHIFT)  # noqa: FBT003
         x, y, heading = pose
         nose = (x + radius * np.cos(heading), y + radius * np.sin(heading))
         here, ahead = self._pixels(np.array([(x, y), nose])).tolist()
-        cv2.circle(picture, here, self._length(radius), red, -1, cv2.LINE_AA, _SHIFT)
+        thick = self._length(radius)
+        for link in [] if links is None else links:
+            ends = self._pixels(link).tolist()
+            cv2.line(picture, *ends, red, max(1, 2 * thick >> _SHIFT), cv2.LINE_AA, _SHIFT)
+            for end in ends:
+                cv2.circle(picture, end, thick, red, -1, cv2.LINE_AA, _SHIFT)
+        cv2.circle(picture, here, thick, red, -1, cv2.LINE_AA, _SHIFT)
         cv2.line(picture, here, ahead, white, 2, cv2.LINE_AA, _SHIFT)
         return picture
 

@@ -96,9 +96,9 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         mode, actions, everyone = self.autoreset_mode, np.asarray(actions, float), np.arange(self.num_envs)
         if not self._sensed:
             raise ArenaError("the animals are nowhere yet; call reset() before the first step()")
-        if actions.shape != (self.num_envs, 2):
+        if actions.shape != self.action_space.shape:
             raise ArenaError(
-                f"the actions have shape {actions.shape}; give two numbers a row for {self.num_envs}"
+                f"the actions have shape {actions.shape}; for {self.num_envs} give {self.action_space.shape}"
             )
         if mode is AutoresetMode.DISABLED and self._done.any():
             raise ArenaError("some episodes have ended; reset them with options={'reset_mask': ended}")
@@ -132,19 +132,12 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
             else:
                 gymnasium.Env.reset(one, seed=seed)
             self._rngs[k] = one.np_random
-            starts.append(one.starting_pose(options))
+            starts.append(one.start(options))
         self._explorers.begin(which, starts, [self._rngs[k] for k in which.tolist()])
         self._steps[which], self._done[which] = 0, False
 
     def _move(self, which: np.ndarray, actions: np.ndarray) -> None:
-        one, body, actions = self.explorer, self.explorer.body, actions[which]
-        commands = body.velocities(actions)
-        if one.control == "wheels":
-            wheels = (actions * body.max_speed).tolist()
-            commands = np.array([body.from_wheels(left, right) for left, right in wheels]).reshape(-1, 2)
-        if not np.isfinite(commands).all():
-            raise ArenaError("some actions are not finite; give numbers between -1 and 1")
-        self._explorers.act(which, commands, one.dt)
+        self._explorers.act(which, self.explorer.velocities(actions[which]), self.explorer.dt)
         self._steps[which] += 1
 
     def _judge(self, before: Observation, after: Observation) -> np.ndarray:
@@ -154,11 +147,13 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         return np.array([reward(_row(before, k), _row(after, k)) for k in range(self.num_envs)])
 
     def _truth(self, which: np.ndarray) -> Truth:
-        there = np.zeros(self.num_envs, bool)
+        told, there = dict[str, np.ndarray](), np.zeros(self.num_envs, bool)
         there[which] = True
-        poses, touched = np.zeros((self.num_envs, 3)), np.zeros(self.num_envs, bool)
-        poses[which], touched[which] = self._explorers.poses(which), self._explorers.touched(which)
-        return {"pose": poses, "_pose": there, "touched": touched, "_touched": there.copy()}
+        for name, known in self.explorer.truth(self._explorers, which).items():
+            told[name] = np.zeros((self.num_envs, *known.shape[1:]), known.dtype)
+            told[name][which] = known
+            told[f"_{name}"] = there.copy()
+        return told
 
 
 def _row(sensed: Observation, k: int) -> Observation:

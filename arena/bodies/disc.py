@@ -1,21 +1,19 @@
 """The body: a disc with differential drive (two wheels), which walls stop."""
 
 import math
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from pydantic import Field
 
 from arena.angles import wrap_angle
-from arena.bodies.motors import Motors
+from arena.bodies.base import POSE, TOLERANCE, Axis, Configurations, Segments, Unit, check_starts
+from arena.bodies.motors import Motors, Rollers
 from arena.bodies.rolling import Limits, look_ahead, roll
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
 from arena.settings import Settings, Share
-
-TOLERANCE = 1e-3
-"""How far (m) a start may reach beyond free space; a step never does by more than `rolling.CLOSE`."""
 
 _Gain = Annotated[float, Field(gt=0, le=10)]
 
@@ -123,6 +121,9 @@ class Disc(Settings):
         For parameters that are not positive and finite.
     """
 
+    axes: ClassVar[tuple[Axis, ...]] = POSE
+    motors: ClassVar[tuple[Unit, ...]] = ("m", "rad")
+
     radius: Annotated[float, Field(gt=0, le=1e3)] = 0.18
     max_speed: Annotated[float, Field(gt=0, le=1e3)] = 0.65
     max_turn: Annotated[float, Field(gt=0, le=1e3)] = np.pi
@@ -155,6 +156,33 @@ class Disc(Settings):
         asked: np.ndarray = commands * [self.max_speed, self.max_turn]
         return asked
 
+    def is_free(self, arena: Arena, configurations: Configurations) -> Bool[np.ndarray, " bodies"]:
+        """Whether it touches nothing there and is on the platform."""
+        return arena.is_free(configurations[:, :2], max(0.0, self.radius - TOLERANCE))
+
+    def sample_free(self, arena: Arena, count: int, rng: np.random.Generator) -> Configurations:
+        """Draw poses evenly from free space.
+
+        Raises
+        ------
+        ArenaError
+            When it fits nowhere.
+        """
+        places = arena.sample_free(count, self.radius, rng)
+        return np.column_stack([places, rng.uniform(-np.pi, np.pi, count)])
+
+    def camera_poses(self, configurations: Configurations) -> Float[np.ndarray, "bodies 3"]:
+        """Its own: the eye is in its middle and looks ahead."""
+        return configurations
+
+    def segments(self, configurations: Configurations) -> Segments:
+        """Its middle, of which all of it is within its radius."""
+        return np.repeat(configurations[:, None, None, :2], 2, axis=2)
+
+    def at_large(self, arena: Arena, count: int) -> Rollers:
+        """Give the physics of this many of its kind."""
+        return Rollers(self, arena, count)
+
     def from_wheels(self, left: float, right: float) -> tuple[float, float]:
         """Turn the speeds of the wheels' rims (m/s) into the speed (m/s) and turn rate (rad/s) of the body.
 
@@ -174,11 +202,5 @@ class Disc(Settings):
         """
         if self.slip and rng is None:
             raise ArenaError(f"the wheels slip by {self.slip:g}; give `rng`, a numpy.random.Generator")
-        if not np.isfinite(pose).all():
-            raise ArenaError(f"the start {pose} is not finite; give x, y (m) and heading (rad)")
-        if not arena.is_free(np.array([pose[:2]], dtype=float), max(0.0, self.radius - TOLERANCE))[0]:
-            raise ArenaError(
-                f"a body of radius {self.radius:g} m cannot start at ({pose[0]:g}, {pose[1]:g}) m: it would "
-                "touch a wall or leave the platform; choose a start in free space"
-            )
+        check_starts(self, arena, np.array([pose], dtype=float))
         return Drive(self, arena, pose, rng)

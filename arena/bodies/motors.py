@@ -8,8 +8,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
+from arena.angles import wrap_angle
+from arena.bodies.base import Configurations
 from arena.bodies.rolling import CONTACT, roll_all
 
 if TYPE_CHECKING:
@@ -82,3 +84,38 @@ class Motors:
                 self._obeyed = self._waiting.popleft()[1]
             left -= part
         return parts
+
+
+class Rollers:
+    """Discs of one kind at large in a room; see `arena.bodies.base.AtLarge`."""
+
+    def __init__(self, body: Disc, arena: Arena, count: int) -> None:
+        self._motors = Motors(body, arena, count)
+        self._states = np.full((count, 6), math.nan)
+
+    @property
+    def configurations(self) -> Configurations:
+        """Where each is: x, y (m) and heading (rad)."""
+        return np.column_stack([self._states[:, :2], wrap_angle(self._states[:, 2])])
+
+    @property
+    def touched(self) -> Bool[np.ndarray, " bodies"]:
+        """Whether a wall or the platform's border stopped it in its last step."""
+        stopped: np.ndarray = np.isfinite(self._states[:, CONTACT])
+        return stopped
+
+    def begin(self, which: Int[np.ndarray, " some"], configurations: Configurations) -> None:
+        """Put these there, at rest."""
+        self._states[which] = math.nan
+        self._states[which, :3], self._states[which, 3:CONTACT] = configurations, 0.0
+        self._motors.begin(which)
+
+    def step(
+        self,
+        which: Int[np.ndarray, " some"],
+        velocities: Float[np.ndarray, "some motors"],
+        dt: float,
+        rngs: Sequence[np.random.Generator],
+    ) -> None:
+        """Let these go by m/s and rad/s for dt (s)."""
+        self._motors.move(self._states, which, velocities, dt, rngs)

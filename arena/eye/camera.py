@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cached_property
 from typing import Annotated, Literal
@@ -16,6 +16,7 @@ from pydantic import Field
 from arena.errors import ArenaError
 from arena.eye import raycast, render
 from arena.eye.background import backdrop
+from arena.eye.noise import Generators, add_noise
 from arena.eye.projection import Lens, direction, unsound
 from arena.rooms.arena import Arena
 from arena.settings import Settings
@@ -115,7 +116,8 @@ class Camera(Settings):
         poses: Poses,
         *,
         out: Images | None = None,
-        rng: np.random.Generator | Sequence[np.random.Generator] | None = None,
+        rng: Generators | None = None,
+        own: Callable[[Images], None] | None = None,
     ) -> Images:
         """Paint what the camera sees from each pose (m, m, rad).
 
@@ -129,6 +131,8 @@ class Camera(Settings):
         rng
             Where the sensor noise comes from, or one generator for each view; needed only if the camera has
             `noise`.
+        own
+            Paints what the camera sees of its own body onto the views, before their noise.
 
         Raises
         ------
@@ -145,18 +149,14 @@ class Camera(Settings):
                 f"the buffer is {out.dtype} of shape {out.shape}{layout}; "
                 f"these views need C-contiguous, writeable uint8 of {shape}"
             )
-        if self.noise and rng is None:
-            raise ArenaError(f"the camera has noise {self.noise:g}; give `rng`, a numpy.random.Generator")
         (lens, ray), (faces, floor, *textures) = self._optics, arena.scene
         sky = backdrop(lens, floor[:3], arena.ceiling, arena.zenith)
         scene = (faces, tuple(floor), *textures), tuple(lens), tuple(sky), ray
         rows = out.reshape(*shape[:2], 3 * self.width)
         _in_threads(lambda at: render.render(poses[at], *scene, rows[at]), len(poses))
-        if rng is not None and self.noise:
-            each = [rng] * len(out) if isinstance(rng, np.random.Generator) else rng
-            for image, its in zip(out, each, strict=True):
-                grain = its.standard_normal(image.shape, dtype=np.float32)
-                image[:] = np.clip(np.rint(image + 255 * self.noise * grain), 0, 255)
+        if own is not None:
+            own(out)
+        add_noise(out, self.noise, rng)
         return out
 
     def depth(self, arena: Arena, poses: Poses) -> Float[np.ndarray, "views width"]:

@@ -1,39 +1,51 @@
 """Motor babbling: smooth random commands, whatever comes of them, from which a motor model is learnt."""
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, ClassVar
 
 import numpy as np
 from jaxtyping import Float
 from pydantic import Field
 
-from arena.bodies.disc import Disc, Pose
+from arena.angles import wrap_angle
+from arena.bodies.base import AtLarge, Body, check_starts
+from arena.bodies.disc import Disc
 from arena.motions.base import Walk
-from arena.motions.locomotion import random_start
 from arena.motions.policy import Policy, Sensed
 from arena.rooms.arena import Arena
 from arena.settings import Positive, Settings
 
 
 class Babble(Settings):
-    r"""Speeds and turns at random, forwards and backwards, heedless of what is sensed and of walls.
+    r"""Motors driven at random, forwards and backwards, heedless of what is sensed and of walls.
 
     .. math:: u_k = \mathrm{clip}(\sigma x_k, -1, 1), \qquad
         x_{k + 1} = e^{-\Delta / \tau} x_k + \sqrt{1 - e^{-2 \Delta / \tau}} \, \xi_k
 
-    with independent standard normal ξ for speed and turn, so that a recording of 400 views shows what every
-    command does. The recording has the `commands`.
+    with independent standard normal ξ for each motor, so that a recording of 400 views shows what every
+    command does. The recording has the `commands`, each of which holds from its view to the next.
+
+    A `Disc` is looked through every `dt`. Of any other body a view is taken when its motors have gone as far
+    as told; where something stops it x changes its sign; and one whose motors each move an axis of their own
+    swings at times at full speed straight to a posture far away, drawn evenly, without which it would stay
+    around where it began.
 
     Parameters
     ----------
     speed, turn
-        σ of either command, as shares of what the body can do.
+        σ of what goes and of what turns, as shares of what the body can do.
     correlation_time
         τ, s.
     dt
-        Δ, the time from a view and its command to the next, s.
+        Δ, the time from a view and its command to the next, s, for a `Disc`.
+    view_every_m, view_every_rad
+        How far motors go (m) or turn (rad) from a view to the next, together, as the root of the sum of
+        squares; no longer than τ.
+    swing_every
+        Views from the end of a swing to the next.
     start
-        First pose; drawn from free space when None.
+        Where the body begins on its axes; drawn from what is free when None.
 
     Raises
     ------
@@ -46,27 +58,31 @@ class Babble(Settings):
     """
 
     default_views: ClassVar[int] = 400
+    any_body: ClassVar[bool] = True
 
     speed: Annotated[float, Field(gt=0, le=1)] = 0.6
     turn: Annotated[float, Field(gt=0, le=1)] = 0.5
     correlation_time: Positive = 0.6
     dt: Positive = 0.2
-    start: Pose | None = None
+    view_every_m: Positive = 0.05
+    view_every_rad: Positive = 0.1
+    swing_every: Annotated[int, Field(ge=1)] = 400
+    start: tuple[float, ...] | None = None
 
-    def policy(self, rng: np.random.Generator, explorers: int) -> Policy:
-        """Make a policy for this many explorers, each with commands of its own; it never stops."""
-        memory = math.exp(-self.dt / self.correlation_time)
-        kick = math.sqrt(1 - memory**2)
-        wish = rng.standard_normal((explorers, 2))
+    def policy(self, rng: np.random.Generator, explorers: int, body: Body = Disc()) -> Policy:
+        """Make a policy for this many explorers, each with commands of its own every dt; it never stops."""
+        memory, kick = self._memory(self.dt)
+        strength = self._strength(body)
+        wish = rng.standard_normal((explorers, len(strength)))
 
-        def babble(sensed: Sensed) -> Float[np.ndarray, "explorers 2"]:  # noqa: ARG001
-            command: np.ndarray = np.clip(wish * [self.speed, self.turn], -1, 1)
+        def babble(sensed: Sensed) -> Float[np.ndarray, "explorers motors"]:  # noqa: ARG001
+            command: np.ndarray = np.clip(wish * strength, -1, 1)
             wish[:] = memory * wish + kick * rng.standard_normal(wish.shape)
             return command
 
         return babble
 
-    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:
+    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
         """Babble until this many views are taken, the first at the start.
 
         Raises
@@ -74,11 +90,62 @@ class Babble(Settings):
         ArenaError
             When the body does not fit, or the start is not free.
         """
-        drive = body.place(arena, self.start or random_start(arena, body, rng), rng)
-        policy, count = self.policy(rng, 1), views or self.default_views
-        poses, commands = np.empty((count, 3)), np.empty((count, 2))
-        for view in range(count):
-            poses[view], commands[view] = drive.pose, policy({})
-            speed, turn = body.velocities(commands[view]).tolist()
-            drive.step(speed, turn, self.dt)
-        return Walk(self.dt * np.arange(count), poses, commands=commands)
+        start = body.sample_free(arena, 1, rng) if self.start is None else np.array([self.start], float)
+        check_starts(body, arena, start)
+        one, bodies, count = np.zeros(1, int), body.at_large(arena, 1), views or self.default_views
+        bodies.begin(one, start)
+        there, commands = np.empty((count, len(body.axes))), np.empty((count, len(body.motors)))
+        times = self.dt * np.arange(count + 1)
+        wishes = self._every_dt(rng) if isinstance(body, Disc) else self._by_motion(arena, body, bodies, rng)
+        for view, (command, dt) in zip(range(count), wishes, strict=False):
+            there[view], commands[view] = bodies.configurations[0], command
+            bodies.step(one, body.velocities(commands[view : view + 1]), dt, [rng])
+            if not isinstance(body, Disc):
+                times[view + 1] = times[view] + dt
+        return Walk(times[:-1], there, commands=commands)
+
+    def _every_dt(self, rng: np.random.Generator) -> Iterator[tuple[np.ndarray, float]]:
+        """Give the commands of a disc, and how long each holds, s."""
+        policy = self.policy(rng, 1)
+        while True:
+            yield np.asarray(policy({}))[0], self.dt
+
+    def _by_motion(
+        self, arena: Arena, body: Body, bodies: AtLarge, rng: np.random.Generator
+    ) -> Iterator[tuple[np.ndarray, float]]:
+        """Give the commands of any other body, and how long each holds, s."""
+        every = np.array([self.view_every_m if unit == "m" else self.view_every_rad for unit in body.motors])
+        strength, most = self._strength(body), body.velocities(np.ones(len(every)))
+        circles = [axis.kind == "circle" for axis in body.axes]
+        swings = len(body.axes) == len(body.motors)
+        wish = rng.standard_normal(len(every))
+        while True:
+            for _ in range(self.swing_every):
+                command = np.clip(strength * wish, -1, 1)
+                dt = min(1 / _length(body.velocities(command) / every), self.correlation_time)
+                yield command, dt
+                memory, kick = self._memory(dt)
+                wish = memory * wish * (-1 if bodies.touched[0] else 1) + kick * rng.standard_normal(len(wish))
+            goal, touched = body.sample_free(arena, 1, rng)[0], not swings
+            while not touched:
+                way = goal - bodies.configurations[0]
+                way[circles] = wrap_angle(way[circles])
+                left, fastest = _length(way / every), np.abs(way / most).max()
+                if left < 1e-9:
+                    break
+                # a slip may miss the goal: from within a view it is there
+                yield way / most / fastest, fastest / max(left, 1.0)
+                touched = left <= 1.0 or bool(bodies.touched[0])
+
+    def _strength(self, body: Body) -> Float[np.ndarray, " motors"]:
+        return np.array([self.speed if unit == "m" else self.turn for unit in body.motors])
+
+    def _memory(self, dt: float) -> tuple[float, float]:
+        """What is left of x after dt (s), and how strong ξ is."""
+        memory = math.exp(-dt / self.correlation_time)
+        return memory, math.sqrt(1 - memory**2)
+
+
+def _length(way: np.ndarray) -> float:
+    # spelt out: a norm is rounded as the processor likes
+    return math.sqrt(sum(part * part for part in way.tolist()))

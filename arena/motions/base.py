@@ -15,11 +15,11 @@ class Walk(NamedTuple):
 
     times: Float[np.ndarray, " views"]
     """s, never decreasing."""
-    poses: Float[np.ndarray, "views 3"]
-    """x, y in m and heading in rad, in (−π, π]."""
+    poses: Float[np.ndarray, "views axes"]
+    """x, y in m and heading in rad, in (−π, π]; of another body than a disc, where it was on its axes."""
     notes: Mapping[str, object] = {}
     """What else there is to know about this walk, as far as JSON can say; `explore` keeps it."""
-    commands: Float[np.ndarray, "views 2"] | None = None
+    commands: Float[np.ndarray, "views motors"] | None = None
     """What was commanded from each view to the next, in [−1, 1], by a motion that gives one a view."""
 
 
@@ -37,7 +37,7 @@ class Motion(Protocol):
 
     A motion is a value: `model_dump` gives the parameters that, with the arena, the body and the generator's
     state, determine every walk to the last bit. All poses of a walk come from one `Drive`, or from a recorded
-    path; the body is free in each.
+    path; the body is free in each. Most motions steer a `Disc`; those that move `any_body` say so.
     """
 
     @property

@@ -6,7 +6,8 @@ import numpy as np
 import shapely
 from shapely.geometry.base import BaseGeometry
 
-from arena.bodies.disc import TOLERANCE, Disc
+from arena.bodies.base import TOLERANCE
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.locomotion import Point, free_space
 from arena.rooms.arena import Arena

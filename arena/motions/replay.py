@@ -10,7 +10,8 @@ from pydantic import Field, PlainSerializer, model_validator
 from shapely.geometry.base import BaseGeometry
 
 from arena.angles import wrap_angle
-from arena.bodies.disc import TOLERANCE, Disc
+from arena.bodies.base import TOLERANCE
+from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
 from arena.motions.locomotion import Point, free_space

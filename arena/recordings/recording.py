@@ -37,7 +37,7 @@ class Recording:
         What was commanded from each view to the next, in [−1, 1]; NaN where the explorer stopped. No truth:
         the animal knows it. None for motions that do not tell.
     joints
-        Angles of the body's joints (rad). None for a body without any.
+        Where the body was on its axes (rad, m): ground truth, for scoring only. None for one without joints.
     signals
         Whatever else has one row of numbers a view, by its name; a name is one word, as in Python.
     attributes
@@ -86,8 +86,8 @@ class Recording:
         return self._columns[name]
 
     def without_truth(self) -> "Recording":
-        """Take the poses away."""
-        return replace(self, poses=None)
+        """Take the poses and joints away."""
+        return replace(self, poses=None, joints=None)
 
     def save(self, path: str | Path) -> None:
         """Write to a folder that does not exist yet; it takes this name only when it is whole.

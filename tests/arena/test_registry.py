@@ -22,7 +22,7 @@ def test_all_that_is_there_is_found() -> None:
         "babble", "brownian", "chemotaxis", "cyclic", "replay", "rotation", "slow_turning", "track"
     ]  # fmt: skip
     assert motions()["brownian"] is Brownian
-    assert list(bodies()) == ["disc", "heavy_disc"]
+    assert list(bodies()) == ["arm", "disc", "heavy_disc", "neck", "rail", "turntable"]
 
 
 def test_a_plugin_is_looked_through_to_the_bottom(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

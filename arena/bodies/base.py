@@ -1,0 +1,129 @@
+"""The contract of a body: axes, what it can be commanded to do, and where it puts the eye."""
+
+from collections.abc import Sequence
+from typing import Any, Literal, NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from arena.errors import ArenaError
+from arena.rooms.arena import Arena
+
+TOLERANCE = 1e-3
+"""How far (m) a start may reach beyond free space."""
+
+Unit = Literal["m", "rad"]
+Configurations = Float[np.ndarray, "bodies axes"]
+"""A number on each axis a row: m, or rad, those of circles in (−π, π]."""
+Segments = Float[np.ndarray, "bodies links 2 2"]
+"""Ends of what bodies are made of, m: each link is all that is within a body's `radius` of a segment."""
+
+
+class Axis(NamedTuple):
+    """A degree of freedom."""
+
+    name: str
+    kind: Literal["line", "circle"]
+    """A joint that turns is a circle if it can turn all round, a line if it has limits."""
+    unit: Unit
+    limits: tuple[float, float] | None = None
+    """None for a circle, and for what only the room limits."""
+
+
+POSE = (Axis("x", "line", "m"), Axis("y", "line", "m"), Axis("heading", "circle", "rad"))
+"""The axes of a body that is where its pose says."""
+
+
+@runtime_checkable
+class AtLarge(Protocol):
+    """Bodies of one kind at large in a room, side by side: they pass through each other, each as alone."""
+
+    @property
+    def configurations(self) -> Configurations:
+        """Where each is."""
+
+    @property
+    def touched(self) -> Bool[np.ndarray, " bodies"]:
+        """Whether something stopped it in its last step: an obstacle, a border, the end of an axis."""
+
+    def begin(self, which: Int[np.ndarray, " some"], configurations: Configurations) -> None:
+        """Put these there, at rest; that they are free is checked by `check_starts`."""
+
+    def step(
+        self,
+        which: Int[np.ndarray, " some"],
+        velocities: Float[np.ndarray, "some motors"],
+        dt: float,
+        rngs: Sequence[np.random.Generator],
+    ) -> None:
+        """Let the motors of these turn for dt (s) by m/s or rad/s; each slips by its own generator."""
+
+
+@runtime_checkable
+class Body(Protocol):
+    """A mechanism in a room: a value, whose configuration is a number on each of its axes.
+
+    Motors move it, q' = B(q) u, until something stops it; they may be fewer than the axes. `model_dump`
+    gives the parameters that, with the room, the start, the commands and the generator, determine every step.
+    """
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """Its degrees of freedom."""
+
+    @property
+    def motors(self) -> tuple[Unit, ...]:
+        """Whether each motor goes (m) or turns (rad)."""
+
+    @property
+    def radius(self) -> float:
+        """Half of how thick it is, m."""
+
+    def velocities(self, commands: Float[np.ndarray, "... motors"]) -> Float[np.ndarray, "... motors"]:
+        """Turn commands in [−1, 1] into what the motors should do, m/s or rad/s."""
+
+    def is_free(self, arena: Arena, configurations: Configurations) -> Bool[np.ndarray, " bodies"]:
+        """Whether it can be there: within the limits of its axes, and touching nothing."""
+
+    def sample_free(self, arena: Arena, count: int, rng: np.random.Generator) -> Configurations:
+        """Draw configurations evenly from the free ones.
+
+        Raises
+        ------
+        ArenaError
+            When it fits nowhere.
+        """
+
+    def camera_poses(self, configurations: Configurations) -> Float[np.ndarray, "bodies 3"]:
+        """Where its eye and nose are, x, y (m), and where the eye looks, rad in (−π, π]."""
+
+    def segments(self, configurations: Configurations) -> Segments:
+        """What can be seen of it from outside."""
+
+    def at_large(self, arena: Arena, count: int) -> AtLarge:
+        """Give the physics of this many of its kind."""
+
+    def model_dump(self) -> dict[str, Any]:
+        """Give the parameters."""
+
+
+def joints_of(body: Body, configurations: np.ndarray) -> np.ndarray | None:
+    """Give what poses do not tell of a body: its configurations, but for one whose configuration is its pose."""
+    return None if body.axes == POSE else configurations
+
+
+def check_starts(body: Body, arena: Arena, configurations: np.ndarray) -> None:
+    """Raise an `ArenaError` unless a body can start at each of these configurations."""
+    names, shape = ", ".join(f"{axis.name} ({axis.unit})" for axis in body.axes), configurations.shape
+    if len(shape) != 2 or shape[1] != len(body.axes):
+        raise ArenaError(f"the starts are of shape {shape}; a {type(body).__name__} has {names} in a row")
+    bad = np.flatnonzero(~np.isfinite(configurations).all(axis=1))
+    if len(bad):
+        raise ArenaError(f"the start {configurations[bad[0]]} is not finite; give {names}")
+    bad = np.flatnonzero(~body.is_free(arena, configurations))
+    if len(bad):
+        told = ", ".join(f"{value:g}" for value in configurations[bad[0]])
+        raise ArenaError(
+            f"a {type(body).__name__} of radius {body.radius:g} m cannot start at {names} = {told}: it would "
+            "touch something, leave the platform or the range of an axis; choose a start in free space"
+        )
