@@ -53,10 +53,16 @@ def act_and_look(explorers: Explorers, policy: Policy, dt: float) -> Iterator[St
     everyone = going = np.arange(explorers.count)
     wanted = explorers.count, len(explorers.body.motors)
     while len(going):
-        there, poses, sensed = explorers.configurations(everyone), explorers.poses(everyone), explorers.sense(going)
+        there, poses, sensed = (
+            explorers.configurations(everyone),
+            explorers.poses(everyone),
+            explorers.sense(going),
+        )
         told = np.asarray(policy(sensed), float)
         if told.shape != wanted:
-            raise ArenaError(f"a policy gave commands of shape {told.shape} for (explorers, motors) = {wanted}")
+            raise ArenaError(
+                f"a policy gave commands of shape {told.shape} for (explorers, motors) = {wanted}"
+            )
         going = going[~np.isnan(told[going]).all(axis=1)]
         commands = np.full(wanted, math.nan)
         commands[going] = told[going]

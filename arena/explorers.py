@@ -42,7 +42,9 @@ class Explorers:
             "odour": np.zeros((count, len(arena.sources)), np.float32),
         }
 
-    def begin(self, which: Which, starts: Sequence[tuple[float, ...]], rngs: Sequence[np.random.Generator]) -> None:
+    def begin(
+        self, which: Which, starts: Sequence[tuple[float, ...]], rngs: Sequence[np.random.Generator]
+    ) -> None:
         """Put these at their starts on the body's axes, at rest.
 
         Raises

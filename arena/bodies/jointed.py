@@ -50,7 +50,9 @@ class Jointed(Settings):
     @model_validator(mode="after")
     def _one_gain_each(self) -> "Jointed":
         if self.motor_gains is not None and len(self.motor_gains) != len(self.axes):
-            raise ValueError(f"{len(self.motor_gains)} motor_gains for {len(self.axes)} motors; give one each")
+            raise ValueError(
+                f"{len(self.motor_gains)} motor_gains for {len(self.axes)} motors; give one each"
+            )
         return self
 
     @property
@@ -90,7 +92,9 @@ class Jointed(Settings):
         low, high = self.ranges.T
         free &= ((low <= joints) & (joints <= high)).all(axis=1)
         # What crosses no edge is in a solid as a whole, or not at all.
-        solids = shapely.union_all([shapely.Polygon(s.outline) for s in arena.solids if s.height > self.height])
+        solids = shapely.union_all(
+            [shapely.Polygon(s.outline) for s in arena.solids if s.height > self.height]
+        )
         inside: np.ndarray = shapely.contains_xy(solids, self.segments(joints)[:, 0, 0])
         return free & ~inside
 

@@ -134,7 +134,11 @@ class Necks:
     """Necks of one kind at large in a room; see `arena.bodies.base.AtLarge`."""
 
     def __init__(self, body: Neck, arena: Arena, count: int) -> None:
-        self._slip, self._bases, self._pans = body.base.slip, Rollers(body.base, arena, count), np.zeros(count)
+        self._slip, self._bases, self._pans = (
+            body.base.slip,
+            Rollers(body.base, arena, count),
+            np.zeros(count),
+        )
 
     @property
     def configurations(self) -> Configurations:

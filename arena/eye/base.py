@@ -42,9 +42,7 @@ class Watcher(Protocol):
     def width(self) -> int:
         """Columns of an image."""
 
-    def look(
-        self, arena: Arena, body: Body, configurations: Configurations, *, rng: Generators
-    ) -> Images:
+    def look(self, arena: Arena, body: Body, configurations: Configurations, *, rng: Generators) -> Images:
         """Paint the body in each configuration, with what sensor noise there is from the generators."""
 
     def model_dump(self) -> dict[str, Any]:

@@ -15,9 +15,7 @@ from arena.kernels import kernel
 
 @kernel()
 @typing.no_type_check
-def _cover(
-    canvas: np.ndarray, ends: np.ndarray, radius: float, strip: np.ndarray, texel: float
-) -> None:
+def _cover(canvas: np.ndarray, ends: np.ndarray, radius: float, strip: np.ndarray, texel: float) -> None:
     """Blend one capsule into a picture; lengths are in pixels, and rows go down where y goes up."""
     height, width = canvas.shape[0], canvas.shape[1]
     ax, ay = ends[0, 0], -ends[0, 1]

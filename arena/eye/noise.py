@@ -11,9 +11,7 @@ Generators = np.random.Generator | Sequence[np.random.Generator]
 """One generator, or one for each view."""
 
 
-def add_noise(
-    views: UInt8[np.ndarray, "views height width 3"], share: float, rng: Generators | None
-) -> None:
+def add_noise(views: UInt8[np.ndarray, "views height width 3"], share: float, rng: Generators | None) -> None:
     """Add independent Gaussian noise, of a standard deviation that is a share of the brightest grey level.
 
     Raises

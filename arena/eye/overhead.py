@@ -89,7 +89,9 @@ class Overhead(Settings):
         """
         pixel = self.span / self.width
         # Of the middle of the pixel at the top left.
-        corner = np.array(self.center) + 0.5 * (pixel - self.span) * np.array([1.0, -self.height / self.width])
+        corner = np.array(self.center) + 0.5 * (pixel - self.span) * np.array(
+            [1.0, -self.height / self.width]
+        )
         segments, poses = body.segments(configurations), body.camera_poses(configurations)
         ahead = 0.5 * body.radius * np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
         dots = np.repeat((poses[:, :2] + ahead)[:, None], 2, axis=1)

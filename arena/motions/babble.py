@@ -125,7 +125,9 @@ class Babble(Settings):
                 dt = min(1 / _length(body.velocities(command) / every), self.correlation_time)
                 yield command, dt
                 memory, kick = self._memory(dt)
-                wish = memory * wish * (-1 if bodies.touched[0] else 1) + kick * rng.standard_normal(len(wish))
+                wish = memory * wish * (-1 if bodies.touched[0] else 1) + kick * rng.standard_normal(
+                    len(wish)
+                )
             goal, touched = body.sample_free(arena, 1, rng)[0], not swings
             while not touched:
                 way = goal - bodies.configurations[0]

@@ -20,19 +20,19 @@ from cogmap.coordinates.relaxation import read_between, relaxed
 from cogmap.coordinates.view_code import Eye, ViewCode
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import neighbour_graph
-from cogmap.inputs import check_views
+from cogmap.inputs import check_views, checked_count
 from cogmap.map.even_memory import EvenMemory
 from cogmap.map.storage import read_state, write_state
 from cogmap.shape.agreement import unless_lower_is_unresolved
 from cogmap.shape.circular import circular_coordinates
-from cogmap.shape.dimension import local_dimension
+from cogmap.shape.dimension import LocalDimension, local_dimension
 from cogmap.shape.homology import Betti, betti
 from cogmap.shape.lattice import short_basis
 
-FEWEST = 100
+FEWEST = 200
 """Fewer views than this have no shape to speak of."""
-MAJORITY = 0.5
-"""Share of the neighbourhoods that must agree on the dimension."""
+MAJORITY, CLEAR = 0.5, 0.9
+"""Share of the neighbourhoods that must agree on the dimension, and with which no other scale is looked at."""
 ONE_SIDED = 5
 """Neighbours that a view is joined to though it is none of theirs: those at the limits of joints look far for
 their last ones, and might find them across a fold of the manifold."""
@@ -60,8 +60,8 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
     components
         Of the code that views are compared by.
     memory
-        Views kept at most, those farthest from each other (`EvenMemory`): 4,000 for two degrees of freedom,
-        12,000 for three. Show it twice as many or more.
+        Views kept at most, those farthest from each other (`EvenMemory`), and never more than half of them:
+        4,000 are enough for two degrees of freedom, 12,000 for three.
     eye
         "panorama", or "perspective" for any picture with borders; told from the views when None.
     seed
@@ -110,9 +110,10 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
             raise CogmapError(f"{views.shape[0]} views are too few to show a shape; give at least {FEWEST}")
         self._code = ViewCode(self.components, eye=self.eye, seed=self.seed).fit(views)
         codes = self._code.transform(views)
-        memory = EvenMemory(self.memory).partial_fit(np.arange(len(codes)), codes)
+        size = min(checked_count("memory", self.memory, FEWEST // 2), len(codes) // 2)
+        memory = EvenMemory(size).partial_fit(np.arange(len(codes)), codes)
         self.eye_, self.indices_, self.codes_ = self._code.eye_, memory.indices_.copy(), memory.codes_.copy()
-        self.dimension_, self.vote_, self.spectrum_ = local_dimension(self.codes_)
+        self.dimension_, self.vote_, self.spectrum_ = _clearest_dimension(self.codes_)
         self.betti_ = unless_lower_is_unresolved(
             betti(self.codes_, check_one_sided=ONE_SIDED, seed=self.seed)
         )
@@ -245,3 +246,16 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
         if lost.any():
             phases[lost], others[lost] = read_between(codes[~lost], phases[~lost], others[~lost], codes[lost])
         return np.hstack(relaxed(codes, phases, others))
+
+
+def _clearest_dimension(codes: Float[np.ndarray, "kept components"]) -> LocalDimension:
+    """Take the dimension on which most neighbourhoods agree, of all points or ever fewer.
+
+    Where a body moves so slowly that the noise of the eye is wider than the space between views, only points
+    farther apart show how it moves.
+    """
+    clearest = local_dimension(codes)
+    while clearest.vote < CLEAR and len(codes) >= FEWEST:
+        codes = EvenMemory(len(codes) // 2).partial_fit(codes).codes_
+        clearest = max(clearest, local_dimension(codes), key=lambda found: found.vote)
+    return clearest
