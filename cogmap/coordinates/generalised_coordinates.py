@@ -32,10 +32,12 @@ from cogmap.shape.lattice import short_basis
 FEWEST = 200
 """Fewer views than this have no shape to speak of."""
 MAJORITY, CLEAR = 0.5, 0.9
-"""Share of the neighbourhoods that must agree on the dimension, and with which no other scale is looked at."""
+"""Share of the neighbourhoods that must agree on the dimension, and with which no other scale is tried."""
 ONE_SIDED = 5
 """Neighbours that a view is joined to though it is none of theirs: those at the limits of joints look far for
 their last ones, and might find them across a fold of the manifold."""
+CHECK = 20
+"""Neighbours in the graph that must tell as many holes: with more, views at the limits see across folds."""
 LANDMARKS = 400
 """On which the cocycles of the loops are found, as many as the loops are counted on."""
 
@@ -115,7 +117,7 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
         self.eye_, self.indices_, self.codes_ = self._code.eye_, memory.indices_.copy(), memory.codes_.copy()
         self.dimension_, self.vote_, self.spectrum_ = _clearest_dimension(self.codes_)
         self.betti_ = unless_lower_is_unresolved(
-            betti(self.codes_, check_one_sided=ONE_SIDED, seed=self.seed)
+            betti(self.codes_, one_sided=ONE_SIDED, check=CHECK, seed=self.seed)
         )
         self.reason_ = self._doubts()
         self.coordinates_ = self._locate() if self.located_ else None

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Any, Literal, get_args
 
+import cv2
 import numpy as np
 import torch
 from jaxtyping import Float32
 from sklearn.utils import gen_batches
 from torch import Tensor
 
-from cogmap.features.image_codes import image_codes
+from cogmap.features.image_codes import HEIGHT, WIDTH, image_codes
 from cogmap.features.seam import wraps_around
 from cogmap.inputs import check_choice, check_views, checked_count
 from cogmap.threads import one_thread
@@ -22,16 +23,25 @@ Eye = Literal["panorama", "perspective"]
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same code."""
-STEPS = 260
-"""Batches from which the components are learnt, so many times as few views must be shown again."""
+STEPS = 600
+"""Batches from which the components are learnt, so many times as few views must be shown again: of 260, two
+neurons were once found to have the same component."""
+COLUMNS = 45
+"""Of the retina, 8° each."""
+ACUITY, SURROUND, POOL = 2.5, 8.0, 1.5
+"""Its blurs in columns: almost twice those of a `CognitiveMap`. Codes of views that have nothing in common
+are all equally far from each other; the more is blurred, the farther from each other are poses whose views
+have something, and the fewer views show which are near."""
+BLUR = 0.8
+"""Of an image code, in its pixels: a thin link that has moved by its width is still where it was."""
 
 
 class ViewCode:
     """Receptors and principal components, by which views that differ little in pose lie near each other.
 
-    A panorama is seen by the retina (`neurons.layers.retina.Retina`), whose receptive fields run around the
-    seam; any other picture as a small blurred one (`image_codes`), because gain control would
-    amplify the still background that a fixed camera sees most of. Components are Sanger's in both cases.
+    A panorama is seen by a retina (`neurons.layers.retina.Retina`), whose receptive fields run around the
+    seam; any other picture as a small blurred one (`image_codes`), because gain control would amplify the
+    still background that a fixed camera sees most of. Components are Sanger's in both cases.
 
     Parameters
     ----------
@@ -107,8 +117,19 @@ class ViewCode:
     def _see(self, views: Any) -> Tensor:
         pixels = np.ascontiguousarray(views)
         if self.eye_ == "perspective":
-            return torch.from_numpy(image_codes(pixels))
+            pictures = image_codes(pixels).reshape(-1, HEIGHT, WIDTH, 3)
+            return torch.from_numpy(
+                np.stack([cv2.GaussianBlur(one, (0, 0), BLUR).ravel() for one in pictures])
+            )
         height, width, _ = self.view_shape_
-        retina = Retina(height, width, rows=min(15, height), columns=min(90, width))
+        retina = Retina(
+            height,
+            width,
+            rows=min(15, height),
+            columns=min(COLUMNS, width),
+            acuity=ACUITY,
+            surround=SURROUND,
+            pool=POOL,
+        )
         seen: Tensor = retina(torch.from_numpy(pixels))
         return seen

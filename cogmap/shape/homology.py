@@ -109,7 +109,7 @@ def betti(
     seed: int = 0,
     neighbours: int = 15,
     check: int | None = 25,
-    check_one_sided: int | None = None,
+    one_sided: int | None = None,
     landmarks: tuple[int, int] = (400, 150),
     draws: int = 3,
 ) -> Betti:
@@ -147,11 +147,11 @@ def betti(
     check
         Neighbours of every point in a second graph, which is looked at once and must tell the same; None
         looks at no other. Without effect where no neighbours are sought, or there are not so many points.
-    check_one_sided
-        How many of these neighbours the second graph joins even when they do not count the point among
-        theirs; all when None. Points at corners of the cloud look farther for their last neighbours than
-        others do, and where it bends towards another part of itself this makes false loops in both graphs:
-        as in that of all postures of an arm whose joints have limits.
+    one_sided
+        How many of its neighbours a point is joined to even when they do not count it among theirs; all when
+        None. Points at corners of a cloud look farther for their last neighbours than others do, and where
+        it bends towards another part of itself, as that of all postures does of an arm whose joints have
+        limits, or has few points, they find false ones in every graph.
     landmarks
         How many for pieces and loops, and how many of these for voids.
     draws
@@ -164,7 +164,7 @@ def betti(
     """
     _check_options(metric, max_dimension, landmarks, draws)
     counts = (neighbours,) if check is None else (neighbours, check)
-    space, *others = _metric_spaces(X, metric, counts, check_one_sided)
+    space, *others = _metric_spaces(X, metric, counts, one_sided)
     judged: betti_thresholds.Metric = "geodesic" if metric == "geodesic" or sp.issparse(X) else "euclidean"
     wanted = [landmarks[dimension == 2] for dimension in range(max_dimension + 1)]
     starts = np.random.default_rng(seed).integers(len(space), size=draws)
@@ -282,11 +282,7 @@ def _metric_spaces(
     _check_enough(len(X))
     # What has enough points for the first number and too few for the second is looked at once.
     counts = (counts[0], *(count for count in counts[1:] if count < len(X)))
-    if metric == "euclidean":
-        return [rips.euclidean(X)]
-    if one_sided is None:
-        return [*rips.geodesics(X, counts)]
-    return [rips.geodesic(X, counts[0]), *rips.geodesics(X, counts[1:], one_sided)]
+    return [*rips.geodesics(X, counts, one_sided)] if metric == "geodesic" else [rips.euclidean(X)]
 
 
 def _checked_distances(X: Num[np.ndarray, "points *features"]) -> Float[np.ndarray, "points points"]:

@@ -82,7 +82,7 @@ def geodesics(
     X: Float[np.ndarray, "points features"], counts: Sequence[int], one_sided: int | None = None
 ) -> list[Paths]:
     """Shortest paths in the graphs of several numbers of neighbours, as `geodesic` (`neighbour_graph`)."""
-    graphs = neighbour_graphs(X, counts, one_sided=one_sided) if counts else []
+    graphs = neighbour_graphs(X, counts, one_sided=one_sided)
     return [along(*found) for found in zip(graphs, counts, strict=True)]
 
 
