@@ -53,22 +53,19 @@ def act_and_look(explorers: Explorers, policy: Policy, dt: float) -> Iterator[St
     everyone = going = np.arange(explorers.count)
     wanted = explorers.count, len(explorers.body.motors)
     while len(going):
-        there, poses, sensed = (
-            explorers.configurations(everyone),
-            explorers.poses(everyone),
-            explorers.sense(going),
-        )
+        there, poses = explorers.configurations(everyone), explorers.poses(everyone)
+        sensed = explorers.sense(going)
         told = np.asarray(policy(sensed), float)
         if told.shape != wanted:
             raise ArenaError(
-                f"a policy gave commands of shape {told.shape} for (explorers, motors) = {wanted}"
+                f"a policy gave commands of shape {told.shape}, not of explorers and motors {wanted}"
             )
         going = going[~np.isnan(told[going]).all(axis=1)]
         commands = np.full(wanted, math.nan)
         commands[going] = told[going]
         if not np.isfinite(commands[going]).all():
             raise ArenaError(
-                "a policy gave a command that is not finite; give a number for each motor, or NaN for all to stop"
+                "a policy gave a command that is not finite; give a number for each motor, or all NaN to stop"
             )
         explorers.act(going, explorers.body.velocities(commands[going]), dt)
         touched = np.zeros(explorers.count, bool)
@@ -90,7 +87,7 @@ class Journeys(NamedTuple):
     steps: Int[np.ndarray, " explorers"]
     """How many commands each has obeyed: the row of `poses` from which on it stands still."""
     joints: Float[np.ndarray, "looks explorers axes"] | None = None
-    """Where the body was on its axes, row by row as `poses`; None for a disc, which is where its pose says."""
+    """Where the body was on its axes, row by row as `poses`; None for a disc, of which poses tell all."""
 
 
 def journeys(

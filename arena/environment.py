@@ -120,7 +120,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         if control not in ("velocity", "wheels"):
             raise ArenaError(f"control is {control!r}; choose 'velocity' or 'wheels'")
         if control == "wheels" and not isinstance(body, Disc):
-            raise ArenaError(f"a {type(body).__name__} has no two wheels; choose the control 'velocity'")
+            raise ArenaError(f"the {type(body).__name__} has no two wheels; choose the control 'velocity'")
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ArenaError(f"render_mode is {render_mode!r}; choose 'rgb_array' or None")
         self.arena = arena if isinstance(arena, Arena) else Arena.load(arena)
@@ -185,9 +185,9 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
             raise ArenaError("the animal is nowhere yet; call reset() before the first step()")
         command = np.asarray(action, float)
         if command.shape != self.action_space.shape:
+            wanted = _COUNTS[len(self.body.motors)]
             raise ArenaError(
-                f"the action has shape {command.shape}; {self.control} takes {_COUNTS[len(self.body.motors)]} "
-                "between -1 and 1"
+                f"the action has shape {command.shape}; {self.control} takes {wanted} between -1 and 1"
             )
         self._one.act(_ONE, self.velocities(command[None]), self.dt)
         after, info = self._sense()

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from threading import Event
-from typing import Any
+from typing import Any, cast
 
 import numba
 import numpy as np
@@ -21,7 +21,7 @@ from arena.errors import ArenaError
 from arena.explorers import Explorers
 from arena.eye.base import AnyEye, see
 from arena.eye.camera import Camera, Images
-from arena.motions.base import Motion, Striding, Walk, join
+from arena.motions.base import Motion, MovesAnyBody, Striding, Walk, join
 from arena.motions.policy import Policy
 from arena.recordings import storage
 from arena.recordings.origin import origin, unlike
@@ -91,12 +91,7 @@ def explore(
         one.begin(np.zeros(1, int), [begin], [rng])
         steps = islice(act_and_look(one, of_one(motion, len(body.motors)), dt), views)
         counted = tqdm(steps, total=views, unit="view", disable=not progress)
-        return write_down(iter(counted), dt, path, (camera.height, camera.width, 3), told, body)
-    if not (isinstance(body, Disc) or getattr(motion, "any_body", False)):
-        raise ArenaError(
-            f"{type(motion).__name__} steers a disc, and the body is of kind {type(body).__name__}; "
-            "let it babble, replay a path or go by a policy"
-        )
+        return write_down(iter(counted), dt, path, (camera.height, camera.width, 3), told, body=body)
     if start is not None or dt is not None:
         raise ArenaError(f"start and dt are of a policy; {type(motion).__name__} has its own")
     views = motion.default_views if views is None else views
@@ -107,11 +102,11 @@ def explore(
         return Recording.open(path)
     walk_rng, nose_rng = (np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(2))
     crew = _Crew(arena, camera, body, seed, progress)
-    if path is not None or views is None or not isinstance(motion, Striding):
-        walk = motion.walk(arena, body, views, walk_rng)
-        strides, views = iter([walk]), len(walk.times)
-    else:
+    if path is None and views is not None and isinstance(motion, Striding) and isinstance(body, Disc):
         strides = motion.strides(arena, body, views, walk_rng)
+    else:
+        walk = _walk(motion, arena, body, views, walk_rng)
+        strides, views = iter([walk]), len(walk.times)
     if path is None:
         walk, images = crew.see(strides, views)
     poses = body.camera_poses(walk.poses)
@@ -139,6 +134,18 @@ def explore(
             "goes on from there"
         ) from None
     return Recording.open(path)
+
+
+def _walk(motion: Motion, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+    """Let a motion move a body, if it can."""
+    if isinstance(body, Disc):
+        return motion.walk(arena, body, views, rng)
+    if isinstance(motion, MovesAnyBody):
+        return cast("MovesAnyBody", motion).walk(arena, body, views, rng)
+    raise ArenaError(
+        f"{type(motion).__name__} steers a disc, and this body is of kind {type(body).__name__}; "
+        "let it babble, replay a path or go by a policy"
+    )
 
 
 def _check_numbers(views: int | None, seed: int) -> None:
@@ -195,7 +202,7 @@ class _Crew:
         waiting, taken, there = shards(views), list[Walk](), 0
 
         def paint(rows: slice, rng: np.random.Generator) -> None:
-            see(self.camera, self.arena, self.body, way[rows], images[rows], rng)
+            see(self.camera, self.arena, self.body, way[rows], out=images[rows], rng=rng)
 
         with self._at_work(paint, views) as give:
             for stride in strides:
@@ -211,7 +218,7 @@ class _Crew:
 
         def paint(rows: slice, rng: np.random.Generator) -> None:
             images = np.empty((rows.stop - rows.start, self.camera.height, self.camera.width, 3), np.uint8)
-            see(self.camera, self.arena, self.body, way[rows], images, rng)
+            see(self.camera, self.arena, self.body, way[rows], out=images, rng=rng)
             write_shard(folder, rows, images)
 
         with self._at_work(paint, len(way)) as give:

@@ -84,17 +84,19 @@ class Explorers:
 
     def configurations(self, which: Which) -> Configurations:
         """Tell where these are, on the body's axes: the truth."""
-        return self._bodies.configurations[which]
+        there: Configurations = self._bodies.configurations[which]
+        return there
 
     def touched(self, which: Which) -> Bool[np.ndarray, " some"]:
         """Tell whether something stopped these in their last step: the truth."""
-        return self._bodies.touched[which]
+        stopped: np.ndarray = self._bodies.touched[which]
+        return stopped
 
     def _sense(self, which: Which) -> Observation:
         there, rngs = self.configurations(which), self._generators(which)
         concentrations = self.arena.odours.concentration(self.body.camera_poses(there)[:, :2])
         view = np.empty((len(there), self.camera.height, self.camera.width, 3), np.uint8)
-        see(self.camera, self.arena, self.body, there, view, rngs)
+        see(self.camera, self.arena, self.body, there, out=view, rng=rngs)
         return {"view": view, "odour": self._sniffers.smell(which, concentrations, self._times[which], rngs)}
 
     def _generators(self, which: Which) -> list[np.random.Generator]:

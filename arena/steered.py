@@ -34,9 +34,10 @@ def write_down(
     out: Path | None,
     shape: tuple[int, int, int],
     attributes: dict[str, Any],
+    *,
     body: Body,
 ) -> Recording:
-    """Record the steps (dt s each) of a batch of one body, in memory, or on disk shard by shard.
+    """Record the steps (dt s each) of a batch of one, in memory, or on disk shard by shard.
 
     Raises
     ------

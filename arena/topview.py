@@ -42,7 +42,7 @@ class TopView:
         trail: Float[np.ndarray, "points 2"],
         links: Float[np.ndarray, "links 2 2"] | None = None,
     ) -> UInt8[np.ndarray, "height width 3"]:
-        """Draw a body of this radius (m) by its pose (m, m, rad), its links (m) and the points (m) it passed."""
+        """Draw a body of this radius (m) at a pose (m, m, rad), its links, and the points (m) it passed."""
         picture = self._room.copy()
         blue, red, white = (70, 90, 160), (214, 69, 65), (255, 255, 255)
         cv2.polylines(picture, [self._pixels(trail)], False, blue, 1, cv2.LINE_AA, _SHIFT)  # noqa: FBT003
@@ -51,10 +51,10 @@ class TopView:
         here, ahead = self._pixels(np.array([(x, y), nose])).tolist()
         thick = self._length(radius)
         for link in [] if links is None else links:
-            ends = self._pixels(link).tolist()
-            cv2.line(picture, *ends, red, max(1, 2 * thick >> _SHIFT), cv2.LINE_AA, _SHIFT)
-            for end in ends:
-                cv2.circle(picture, end, thick, red, -1, cv2.LINE_AA, _SHIFT)
+            start, end = self._pixels(link).tolist()
+            cv2.line(picture, start, end, red, max(1, 2 * thick >> _SHIFT), cv2.LINE_AA, _SHIFT)
+            for joint in (start, end):
+                cv2.circle(picture, joint, thick, red, -1, cv2.LINE_AA, _SHIFT)
         cv2.circle(picture, here, thick, red, -1, cv2.LINE_AA, _SHIFT)
         cv2.line(picture, here, ahead, white, 2, cv2.LINE_AA, _SHIFT)
         return picture

@@ -57,9 +57,7 @@ class Arm(Jointed):
             raise ValueError(f"{len(self._limits)} limits for {len(self.links)} links; give one each")
         for ends in self._limits:
             if ends is not None and not ends[0] < ends[1] <= ends[0] + 2 * np.pi:
-                raise ValueError(
-                    f"limits from {ends[0]:g} to {ends[1]:g} rad; give the lower first, of one turn"
-                )
+                raise ValueError(f"limits {ends} rad; give the lower first, and no more than a turn")
         return self
 
     @property

@@ -6,6 +6,7 @@ from typing import Any, Literal, NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from arena.angles import wrap_angle
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
 
@@ -98,7 +99,7 @@ class Body(Protocol):
         """Where its eye and nose are, x, y (m), and where the eye looks, rad in (−π, π]."""
 
     def segments(self, configurations: Configurations) -> Segments:
-        """What can be seen of it from outside."""
+        """Place what can be seen of it from outside."""
 
     def at_large(self, arena: Arena, count: int) -> AtLarge:
         """Give the physics of this many of its kind."""
@@ -107,8 +108,14 @@ class Body(Protocol):
         """Give the parameters."""
 
 
+def wrapped(body: Body, values: np.ndarray) -> np.ndarray:
+    """Wrap what is on a body's circles to (−π, π], in its configurations or in differences of these."""
+    circles = [axis.kind == "circle" for axis in body.axes]
+    return np.where(circles, wrap_angle(values), values)
+
+
 def joints_of(body: Body, configurations: np.ndarray) -> np.ndarray | None:
-    """Give what poses do not tell of a body: its configurations, but for one whose configuration is its pose."""
+    """Give what poses do not tell: the configurations of a body, or None if these are its poses."""
     return None if body.axes == POSE else configurations
 
 
@@ -116,7 +123,7 @@ def check_starts(body: Body, arena: Arena, configurations: np.ndarray) -> None:
     """Raise an `ArenaError` unless a body can start at each of these configurations."""
     names, shape = ", ".join(f"{axis.name} ({axis.unit})" for axis in body.axes), configurations.shape
     if len(shape) != 2 or shape[1] != len(body.axes):
-        raise ArenaError(f"the starts are of shape {shape}; a {type(body).__name__} has {names} in a row")
+        raise ArenaError(f"the starts are of shape {shape}; give {names} of the {type(body).__name__} a row")
     bad = np.flatnonzero(~np.isfinite(configurations).all(axis=1))
     if len(bad):
         raise ArenaError(f"the start {configurations[bad[0]]} is not finite; give {names}")
@@ -124,6 +131,6 @@ def check_starts(body: Body, arena: Arena, configurations: np.ndarray) -> None:
     if len(bad):
         told = ", ".join(f"{value:g}" for value in configurations[bad[0]])
         raise ArenaError(
-            f"a {type(body).__name__} of radius {body.radius:g} m cannot start at {names} = {told}: it would "
-            "touch something, leave the platform or the range of an axis; choose a start in free space"
+            f"a body ({type(body).__name__} of radius {body.radius:g} m) cannot start at {names} = {told}: "
+            "it would touch something, leave the platform or an axis's range; choose a start in free space"
         )

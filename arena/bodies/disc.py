@@ -176,7 +176,7 @@ class Disc(Settings):
         return configurations
 
     def segments(self, configurations: Configurations) -> Segments:
-        """Its middle, of which all of it is within its radius."""
+        """Place its middle, of which all of it is within its radius."""
         return np.repeat(configurations[:, None, None, :2], 2, axis=2)
 
     def at_large(self, arena: Arena, count: int) -> Rollers:

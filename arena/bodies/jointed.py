@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float, Int
 from pydantic import Field, model_validator
 
 from arena.angles import wrap_angle
-from arena.bodies.base import TOLERANCE, Axis, Configurations, Segments, Unit
+from arena.bodies.base import TOLERANCE, Axis, Configurations, Segments, Unit, wrapped
 from arena.bodies.linkage import Chain, are_clear, bend_all, turn_all
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
@@ -50,9 +50,7 @@ class Jointed(Settings):
     @model_validator(mode="after")
     def _one_gain_each(self) -> "Jointed":
         if self.motor_gains is not None and len(self.motor_gains) != len(self.axes):
-            raise ValueError(
-                f"{len(self.motor_gains)} motor_gains for {len(self.axes)} motors; give one each"
-            )
+            raise ValueError(f"{len(self.motor_gains)} gains for {len(self.axes)} motors; give one each")
         return self
 
     @property
@@ -92,11 +90,10 @@ class Jointed(Settings):
         low, high = self.ranges.T
         free &= ((low <= joints) & (joints <= high)).all(axis=1)
         # What crosses no edge is in a solid as a whole, or not at all.
-        solids = shapely.union_all(
-            [shapely.Polygon(s.outline) for s in arena.solids if s.height > self.height]
-        )
-        inside: np.ndarray = shapely.contains_xy(solids, self.segments(joints)[:, 0, 0])
-        return free & ~inside
+        for solid in arena.solids:
+            if solid.height > self.height:
+                free &= ~shapely.contains_xy(shapely.Polygon(solid.outline), self.segments(joints)[:, 0, 0])
+        return free
 
     def sample_free(self, arena: Arena, count: int, rng: np.random.Generator) -> Configurations:
         """Draw configurations evenly from the free ones.
@@ -141,7 +138,7 @@ class Jointed(Settings):
         return np.array([axis.limits or (-math.inf, math.inf) for axis in self.axes])
 
     def edges(self, arena: Arena) -> Float[np.ndarray, "edges 2 2"]:
-        """Ends (m) of all in the room that stops it."""
+        """List the ends (m) of all in the room that stops it."""
         faces = arena.surfaces
         return np.stack([faces.start, faces.end], axis=1)[faces.height > self.height]
 
@@ -151,16 +148,13 @@ class Linkages:
 
     def __init__(self, body: Jointed, arena: Arena, count: int) -> None:
         self._body, self._edges = body, body.edges(arena)
-        self._circles = [axis.kind == "circle" for axis in body.axes]
         self._joints = np.full((count, len(body.axes)), math.nan)
         self._touched = np.zeros(count, bool)
 
     @property
     def configurations(self) -> Configurations:
         """Where each is."""
-        joints = self._joints.copy()
-        joints[:, self._circles] = wrap_angle(joints[:, self._circles])
-        return joints
+        return wrapped(self._body, self._joints)
 
     @property
     def touched(self) -> Bool[np.ndarray, " bodies"]:

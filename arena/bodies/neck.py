@@ -83,7 +83,7 @@ class Neck(Settings):
         return np.column_stack([x, y, wrap_angle(heading + pan)])
 
     def segments(self, configurations: Configurations) -> Segments:
-        """The middle of the base."""
+        """Place the middle of the base."""
         return self.base.segments(configurations)
 
     def at_large(self, arena: Arena, count: int) -> "Necks":
@@ -134,11 +134,8 @@ class Necks:
     """Necks of one kind at large in a room; see `arena.bodies.base.AtLarge`."""
 
     def __init__(self, body: Neck, arena: Arena, count: int) -> None:
-        self._slip, self._bases, self._pans = (
-            body.base.slip,
-            Rollers(body.base, arena, count),
-            np.zeros(count),
-        )
+        self._slip, self._bases = body.base.slip, Rollers(body.base, arena, count)
+        self._pans = np.zeros(count)
 
     @property
     def configurations(self) -> Configurations:

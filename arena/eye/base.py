@@ -61,7 +61,7 @@ AnyEye = Eye | Watcher
 
 
 def see(
-    eye: AnyEye, arena: Arena, body: Body, configurations: Configurations, out: Images, rng: Generators
+    eye: AnyEye, arena: Arena, body: Body, configurations: Configurations, *, out: Images, rng: Generators
 ) -> None:
     """Paint what an eye sees of a room and of a body in each configuration."""
     if isinstance(eye, Camera):

@@ -15,6 +15,7 @@ from arena.eye.capsules import paint
 from arena.eye.noise import Generators, add_noise
 from arena.rooms.arena import Arena
 from arena.rooms.materials import TEXEL, materials, texture
+from arena.rooms.parts import Solid, Wall
 from arena.settings import Positive, Settings
 
 WALL = 0.06
@@ -30,10 +31,10 @@ _Pixels = Annotated[int, Field(gt=0, le=4096)]
 class Overhead(Settings):
     """A camera that looks straight down from far above: parallel rays, x to the right and y up.
 
-    It sees the floor, walls, solids (with the material of their first side on top), and over them the body: each link a strip of a material of
-    its own with round ends, later ones on top, and a red dot where the body's own eye is, towards where
-    that looks. A pixel's share of a link is taken from the distance of its middle from the link's axis,
-    so that the image changes smoothly as the body moves.
+    It sees the floor, walls and solids, of the material of their first side on top, and over them the body:
+    each link a strip of a material of its own with round ends, later ones on top, and a red dot where the
+    body's own eye is, towards where that looks. A pixel's share of a link is taken from the distance of its
+    middle from the link's axis, so that the image changes smoothly as the body moves.
 
     Parameters
     ----------
@@ -89,9 +90,8 @@ class Overhead(Settings):
         """
         pixel = self.span / self.width
         # Of the middle of the pixel at the top left.
-        corner = np.array(self.center) + 0.5 * (pixel - self.span) * np.array(
-            [1.0, -self.height / self.width]
-        )
+        x, y = self.center
+        corner = x + 0.5 * (1 - self.width) * pixel, y + 0.5 * (self.height - 1) * pixel
         segments, poses = body.segments(configurations), body.camera_poses(configurations)
         ahead = 0.5 * body.radius * np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
         dots = np.repeat((poses[:, :2] + ahead)[:, None], 2, axis=1)
@@ -99,8 +99,9 @@ class Overhead(Settings):
         strips = np.stack([*(_strip(self.links[k % len(self.links)], pixel) for k in range(count)), _DOT])
         radii = np.array([body.radius] * count + [0.4 * body.radius])
         capsules = np.concatenate([segments, dots[:, None]], axis=1)
+        plan = _plan(self, arena.walls, arena.solids, arena.floor)
         out = np.empty((len(configurations), self.height, self.width, 3), np.uint8)
-        paint((capsules - corner) / pixel, radii / pixel, strips, TEXEL / pixel, _plan(self, arena), out)
+        paint((capsules - corner) / pixel, radii / pixel, strips, TEXEL / pixel, plan, out)
         add_noise(out, self.noise, rng)
         return out
 
@@ -113,11 +114,14 @@ def _strip(material: str, pixel: float) -> Float[np.ndarray, "texels 3"]:
     """Average a material across a link and over the length of a pixel (m) along it, for each texel."""
     line = texture(material).mean(axis=1)
     wide = max(1, round(pixel / TEXEL))
-    return np.stack([np.roll(line, k, axis=0) for k in range(wide)]).mean(axis=0)[:STRIP]
+    mean: np.ndarray = np.stack([np.roll(line, k, axis=0) for k in range(wide)]).mean(axis=0)[:STRIP]
+    return mean
 
 
 @lru_cache(maxsize=8)
-def _plan(eye: Overhead, arena: Arena) -> Float[np.ndarray, "height width 3"]:
+def _plan(
+    eye: Overhead, walls: tuple[Wall, ...], solids: tuple[Solid, ...], floor: str | tuple[int, int, int]
+) -> Float[np.ndarray, "height width 3"]:
     """Paint what does not move."""
     fine = max(2, -(-FINE // eye.height))
     pixel = eye.span / eye.width / fine
@@ -128,17 +132,19 @@ def _plan(eye: Overhead, arena: Arena) -> Float[np.ndarray, "height width 3"]:
 
     def laid(material: str) -> np.ndarray:
         tile = texture(material)
-        return tile[i % tile.shape[0], j % tile.shape[1]]
+        texels: np.ndarray = tile[i % tile.shape[0], j % tile.shape[1]]
+        return texels
 
-    plan[:] = laid(arena.floor) if isinstance(arena.floor, str) else arena.floor
-    solids = [(shapely.Polygon(solid.outline), solid.sides[0]) for solid in arena.solids]
-    walls = [
+    plan[:] = laid(floor) if isinstance(floor, str) else floor
+    tops = [(shapely.Polygon(solid.outline), solid.sides[0]) for solid in solids]
+    rims = [
         (shapely.LineString([wall.start, wall.end]).buffer(WALL / 2, cap_style="square"), wall.material)
-        for wall in arena.walls
+        for wall in walls
     ]
-    for shape, material in [*solids, *walls]:
+    for shape, material in [*tops, *rims]:
         shapely.prepare(shape)
         inside = shapely.contains_xy(shape, x[None], y[:, None])
         plan[inside] = laid(material)[inside]
     blocks = plan.reshape(eye.height, fine, eye.width, fine, 3)
-    return blocks.mean(axis=(1, 3), dtype=np.float64)
+    mean: np.ndarray = blocks.mean(axis=(1, 3), dtype=np.float64)
+    return mean

@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Float
 from pydantic import Field
 
-from arena.angles import wrap_angle
-from arena.bodies.base import AtLarge, Body, check_starts
+from arena.bodies.base import AtLarge, Body, check_starts, wrapped
 from arena.bodies.disc import Disc
 from arena.motions.base import Walk
 from arena.motions.policy import Policy, Sensed
@@ -116,7 +115,6 @@ class Babble(Settings):
         """Give the commands of any other body, and how long each holds, s."""
         every = np.array([self.view_every_m if unit == "m" else self.view_every_rad for unit in body.motors])
         strength, most = self._strength(body), body.velocities(np.ones(len(every)))
-        circles = [axis.kind == "circle" for axis in body.axes]
         swings = len(body.axes) == len(body.motors)
         wish = rng.standard_normal(len(every))
         while True:
@@ -125,13 +123,11 @@ class Babble(Settings):
                 dt = min(1 / _length(body.velocities(command) / every), self.correlation_time)
                 yield command, dt
                 memory, kick = self._memory(dt)
-                wish = memory * wish * (-1 if bodies.touched[0] else 1) + kick * rng.standard_normal(
-                    len(wish)
-                )
+                wish *= -memory if bodies.touched[0] else memory
+                wish += kick * rng.standard_normal(len(wish))
             goal, touched = body.sample_free(arena, 1, rng)[0], not swings
             while not touched:
-                way = goal - bodies.configurations[0]
-                way[circles] = wrap_angle(way[circles])
+                way = wrapped(body, goal - bodies.configurations[0])
                 left, fastest = _length(way / every), np.abs(way / most).max()
                 if left < 1e-9:
                     break
@@ -143,7 +139,7 @@ class Babble(Settings):
         return np.array([self.speed if unit == "m" else self.turn for unit in body.motors])
 
     def _memory(self, dt: float) -> tuple[float, float]:
-        """What is left of x after dt (s), and how strong ξ is."""
+        """Tell what is left of x after dt (s), and how strong ξ is."""
         memory = math.exp(-dt / self.correlation_time)
         return memory, math.sqrt(1 - memory**2)
 

@@ -6,6 +6,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Float
 
+from arena.bodies.base import Body
 from arena.bodies.disc import Disc
 from arena.rooms.arena import Arena
 
@@ -37,7 +38,7 @@ class Motion(Protocol):
 
     A motion is a value: `model_dump` gives the parameters that, with the arena, the body and the generator's
     state, determine every walk to the last bit. All poses of a walk come from one `Drive`, or from a recorded
-    path; the body is free in each. Most motions steer a `Disc`; those that move `any_body` say so.
+    path; the body is free in each. Most motions steer a `Disc` only; see `MovesAnyBody`.
     """
 
     @property
@@ -55,6 +56,18 @@ class Motion(Protocol):
 
     def model_dump(self) -> dict[str, object]:
         """Give the parameters."""
+
+
+@runtime_checkable
+class MovesAnyBody(Protocol):
+    """A motion that moves any body, as `Motion` a disc."""
+
+    @property
+    def any_body(self) -> bool:
+        """That it does."""
+
+    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:
+        """Move until this many views are taken."""
 
 
 class Striding:

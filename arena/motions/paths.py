@@ -3,7 +3,7 @@
 import csv
 import zipfile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Container, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -44,19 +44,7 @@ def read_path(path: Path) -> RecordedPath:
         When the file cannot be read, lacks a column, holds something that is not a number, has fewer than two
         positions, or times that do not increase.
     """
-    readers = {".csv": _read_csv, ".npz": _read_npz}
-    if path.suffix not in readers:
-        raise ArenaError(f"{path} is neither a .csv nor a .npz file; a recorded path must be one of them")
-    try:
-        columns, rows = readers[path.suffix](path)
-    except ArenaError:
-        raise
-    except OSError as error:
-        raise ArenaError(f"cannot read the path {path}: {error.strerror or error}") from None
-    except _DAMAGE:
-        raise ArenaError(
-            f"cannot read the path {path}: it is damaged, of another kind or holds Python objects"
-        ) from None
+    columns, rows = _read(path, _NAMES)
     missing = [name for name in ("t", "x", "y") if name not in columns]
     if missing:
         raise ArenaError(
@@ -72,9 +60,47 @@ def read_path(path: Path) -> RecordedPath:
     return RecordedPath(columns["t"], np.stack([columns["x"], columns["y"]], axis=1), headings)
 
 
-def _check(path: Path, columns: Mapping[str, np.ndarray], rows: Int[np.ndarray, " samples"]) -> None:
+def read_joints(path: Path, names: Sequence[str]) -> tuple[Times, Float[np.ndarray, "samples axes"]]:
+    """Read a recorded path of joints: `t` (s), and a column for each axis by its name, none of it missing.
+
+    Raises
+    ------
+    ArenaError
+        As `read_path`, and where a sample has no number.
+    """
+    columns, rows = _read(path, ("t", *names))
+    missing = [name for name in ("t", *names) if name not in columns]
+    if missing:
+        raise ArenaError(
+            f"{path} has no column {' and no '.join(missing)}; it must have t, {', '.join(names)}"
+        )
+    _check_numbers(path, columns, rows, columns.keys())
+    return columns["t"], np.stack([columns[name] for name in names], axis=1)
+
+
+def _read(path: Path, names: Sequence[str]) -> tuple[dict[str, np.ndarray], Int[np.ndarray, " samples"]]:
+    """Read the columns of these names that there are, and in which row of the file each sample is."""
+    readers = {".csv": _read_csv, ".npz": _read_npz}
+    if path.suffix not in readers:
+        raise ArenaError(f"{path} is neither a .csv nor a .npz file; a recorded path must be one of them")
+    try:
+        return readers[path.suffix](path, names)
+    except ArenaError:
+        raise
+    except OSError as error:
+        raise ArenaError(f"cannot read the path {path}: {error.strerror or error}") from None
+    except _DAMAGE:
+        raise ArenaError(
+            f"cannot read the path {path}: it is damaged, of another kind or holds Python objects"
+        ) from None
+
+
+def _check_numbers(
+    path: Path, columns: Mapping[str, np.ndarray], rows: Int[np.ndarray, " samples"], whole: Container[str]
+) -> None:
+    """Raise for infinite values, for missing ones in whole columns, and for times that do not increase."""
     for name, values in columns.items():
-        wrong = ~np.isfinite(values) if name == "t" else np.isinf(values)
+        wrong = ~np.isfinite(values) if name in whole else np.isinf(values)
         if wrong.any():
             first = np.flatnonzero(wrong)[0]
             raise ArenaError(f"{path}: row {rows[first]} has {name} = {values[first]}; give a finite number")
@@ -85,6 +111,10 @@ def _check(path: Path, columns: Mapping[str, np.ndarray], rows: Int[np.ndarray, 
             f"{path}: the times do not increase at row {rows[late[0] + 1]}, where {after:g} s follows "
             f"{before:g} s; sort the rows and keep one a time"
         )
+
+
+def _check(path: Path, columns: Mapping[str, np.ndarray], rows: Int[np.ndarray, " samples"]) -> None:
+    _check_numbers(path, columns, rows, ("t",))
     known = np.isfinite(columns["x"]) & np.isfinite(columns["y"])
     if known.sum() < 2:
         raise ArenaError(f"{path} has {known.sum()} positions that are numbers; a path needs at least two")
@@ -92,18 +122,18 @@ def _check(path: Path, columns: Mapping[str, np.ndarray], rows: Int[np.ndarray, 
         raise ArenaError(f"{path} has a heading column without a number; leave it out")
 
 
-def _read_csv(path: Path) -> tuple[dict[str, np.ndarray], Int[np.ndarray, " samples"]]:
+def _read_csv(path: Path, names: Sequence[str]) -> tuple[dict[str, np.ndarray], Int[np.ndarray, " samples"]]:
     with path.open(encoding="utf-8-sig", newline="") as file:
         lines = csv.reader(file, strict=True)
-        names = [name.strip() for name in next(lines, [])]
-        wanted = {name: names.index(name) for name in _NAMES if name in names}
+        head = [name.strip() for name in next(lines, [])]
+        wanted = {name: head.index(name) for name in names if name in head}
         rows, columns = list[int](), [list[float]() for _ in wanted]
         for cells in lines:
             if not cells:
                 continue
-            if len(cells) != len(names):
+            if len(cells) != len(head):
                 raise ArenaError(
-                    f"{path}: row {lines.line_num} has {len(cells)} cells, not {len(names)}; fill it up"
+                    f"{path}: row {lines.line_num} has {len(cells)} cells, not {len(head)}; fill it up"
                 )
             rows.append(lines.line_num)
             for column, (name, index) in zip(columns, wanted.items(), strict=True):
@@ -117,11 +147,11 @@ def _read_csv(path: Path) -> tuple[dict[str, np.ndarray], Int[np.ndarray, " samp
     return dict(zip(wanted, map(np.array, columns), strict=True)), np.array(rows, dtype=int)
 
 
-def _read_npz(path: Path) -> tuple[dict[str, np.ndarray], Int[np.ndarray, " samples"]]:
+def _read_npz(path: Path, names: Sequence[str]) -> tuple[dict[str, np.ndarray], Int[np.ndarray, " samples"]]:
     with zipfile.ZipFile(path):  # An NPY file by the name of NPZ would load too.
         loaded = np.load(path, allow_pickle=False)
     with loaded:
-        arrays = {name: loaded[name] for name in (*_NAMES, "pos") if name in loaded}
+        arrays = {name: loaded[name] for name in (*names, "pos") if name in loaded}
     if "pos" in arrays:
         pos = arrays.pop("pos")
         if pos.ndim != 2 or pos.shape[1] != 2:

@@ -19,7 +19,7 @@ class Policy(Protocol):
     is shown what that one sensed last, and what it says of it is not heard.
     """
 
-    def __call__(self, sensed: Sensed) -> Float[np.ndarray, "2"] | Float[np.ndarray, "explorers 2"] | None:
+    def __call__(self, sensed: Sensed) -> Float[np.ndarray, " motors"] | Float[np.ndarray, "explorers motors"] | None:
         """Give the next command.
 
         Parameters
@@ -31,7 +31,7 @@ class Policy(Protocol):
         Returns
         -------
         command
-            Two numbers in [−1, 1], `(2,)` or `(explorers, 2)`: speed over the body's `max_speed`, turn rate
-            over its `max_turn`; what is too much the body cuts. None, or a row of NaN in a batch, has stopped
-            for good.
+            A number in [−1, 1] for each motor, `(motors,)` or `(explorers, motors)`: of a disc speed over
+            its `max_speed` and turn rate over its `max_turn`, of an arm a share of what each joint can do;
+            what is too much the body cuts. None, or a row of NaN in a batch, has stopped for good.
         """

@@ -10,12 +10,12 @@ from pydantic import Field, PlainSerializer, model_validator
 from shapely.geometry.base import BaseGeometry
 
 from arena.angles import wrap_angle
-from arena.bodies.base import TOLERANCE
+from arena.bodies.base import TOLERANCE, Body, check_starts, wrapped
 from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
 from arena.motions.locomotion import Point, free_space
-from arena.motions.paths import Positions, RecordedPath, Times, read_path
+from arena.motions.paths import Positions, RecordedPath, Times, read_joints, read_path
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 
@@ -29,6 +29,9 @@ _Above = Annotated[float, Field(ge=1e-6, le=1e6)]
 
 class Replay(Settings):
     """Goes where an animal went: see `arena.motions.paths.read_path` for the files.
+
+    Another body than a disc goes through its recorded configurations, all of which must be free: the file has
+    `t` (s) and a column for each axis by its name, such as `joint_1` (`arena.motions.paths.read_joints`).
 
     Where samples are missing, or are not numbers, the way between their neighbours is straight and even. A
     path without headings looks where it goes, and turns evenly between two moves while it is still.
@@ -63,6 +66,7 @@ class Replay(Settings):
     """
 
     default_views: ClassVar[None] = None
+    any_body: ClassVar[bool] = True
 
     path: Annotated[Path, PlainSerializer(str)]
     scale: _Above = 1.0
@@ -82,7 +86,7 @@ class Replay(Settings):
             raise ValueError("fit finds scale and offset itself; leave them out")
         return self
 
-    def walk(self, arena: Arena, body: Disc, views: int | None, rng: np.random.Generator) -> Walk:  # noqa: ARG002
+    def walk(self, arena: Arena, body: Body, views: int | None, rng: np.random.Generator) -> Walk:  # noqa: ARG002
         """Follow the path, for this many views if told; nothing is random.
 
         Raises
@@ -90,6 +94,8 @@ class Replay(Settings):
         ArenaError
             When the file is no path, the path leaves the body's free space or has fewer views.
         """
+        if not isinstance(body, Disc):
+            return self._joints(arena, body, views)
         recorded = read_path(self.path)
         times, positions, notes = _bridged(recorded)
         positions = self._placed(positions, free_space(arena, body))
@@ -98,12 +104,20 @@ class Replay(Settings):
         else:
             known = np.isfinite(recorded.headings)
             headings = np.interp(times, recorded.times[known], np.unwrap(recorded.headings[known]))
-        taken = self._taken(times, positions)[:views]
-        if views is not None and len(taken) < views:
-            raise ArenaError(f"{self.path} gives {len(taken)} views, not {views}; ask for no more")
+        taken = self._taken(times, positions, views)
         positions, clipped = self._kept(arena, body, times, positions)
         poses = np.column_stack([positions, wrap_angle(headings)])[taken]
         return Walk(times[taken] - times[0], poses, {**notes, "clipped": clipped})
+
+    def _joints(self, arena: Arena, body: Body, views: int | None) -> Walk:
+        """Go through recorded configurations."""
+        if self.fit or self.clip or (self.scale, self.offset) != (1.0, (0.0, 0.0)):
+            raise ArenaError("scale, offset, fit and clip are of a disc's path; leave them out")
+        times, joints = read_joints(self.path, [axis.name for axis in body.axes])
+        taken = self._taken(times, body.camera_poses(joints)[:, :2], views)
+        there = wrapped(body, joints[taken])
+        check_starts(body, arena, there)
+        return Walk(times[taken] - times[0], there)
 
     def _placed(self, positions: Positions, free: BaseGeometry) -> Positions:
         """Bring the path into the room."""
@@ -130,8 +144,15 @@ class Replay(Settings):
         ahead: np.ndarray = np.interp(times, times[moving], np.unwrap(np.arctan2(y, x)[moving]))
         return ahead
 
-    def _taken(self, times: Times, positions: Positions) -> Int[np.ndarray, " views"]:
+    def _taken(self, times: Times, positions: Positions, views: int | None) -> Int[np.ndarray, " views"]:
         """Say at which samples views are taken."""
+        taken = self._due(times, positions)[:views]
+        if views is not None and len(taken) < views:
+            raise ArenaError(f"{self.path} gives {len(taken)} views, not {views}; ask for no more")
+        return taken
+
+    def _due(self, times: Times, positions: Positions) -> Int[np.ndarray, " views"]:
+        """Say at which samples a view is due."""
         if self.interval is not None:
             gone, every = times - times[0], self.interval
         elif self.view_every_m is not None:

@@ -155,7 +155,12 @@ def _world(walk: Recording, path: Path) -> _World:
             f"{path} does not tell in which room, by which camera and body it was made; "
             "give a recording that `cogmap explore` wrote"
         )
-    return _World(room, Camera(**told["camera"]), moved(**told["body"]))
+    body = moved(**told["body"])
+    if not isinstance(body, Disc):
+        raise CogmapError(
+            f"{path} was made by a body of kind {type(body).__name__}; only a disc goes by a map"
+        )
+    return _World(room, Camera(**told["camera"]), body)
 
 
 def _metrics(go: Reaching, gone: Journeys) -> dict[str, object]:

@@ -14,6 +14,7 @@ from cogmap.errors import CogmapError
 from cogmap.tables import as_table
 
 Json = Annotated[bool, Parameter(name="--json", negative="", help="Print metrics as JSON on stdout.")]
+Told = Annotated[list[str] | None, Parameter(name="--set", negative="")]
 Seed = Annotated[int, Parameter(help="Of everything random; the same seed gives the same arrays.")]
 
 

@@ -8,10 +8,11 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from arena import Arena
-from cogmap.commands.common import Json, Seed, tell
+from cogmap.commands.common import Json, Seed, Told, tell
 from cogmap.errors import CogmapError
 from cogmap.experiments.demo import demo
-from cogmap.experiments.registry import listing, run_experiment
+from cogmap.experiments.parameters import FAMILIES, build, by_family, parse, unknown
+from cogmap.experiments.registry import experiments, listing, run_experiment
 from cogmap.pages.report import report
 from cogmap.sweeps import Plan, sweep
 from cogmap.tables import as_markdown
@@ -60,7 +61,7 @@ def _help() -> str:
 {listed}
 
 Examples: `cogmap experiment rotation`; `cogmap experiment brownian --views 4000 --seed 1 --out walk`;
-`cogmap experiment fusion --arena pillar`; `cogmap experiment --list`.
+`cogmap experiment fusion --arena pillar --set map.charts=2000`; `cogmap experiment --list`.
 """
 
 
@@ -76,6 +77,7 @@ def _experiment(
     views: int | None = None,
     seed: Seed = 0,
     out: Path | None = None,
+    told: Told = None,
     show: Annotated[bool, Parameter(name="--list", negative="")] = False,
     as_json: Json = False,
 ) -> None:
@@ -91,6 +93,8 @@ def _experiment(
         To learn from; as many as in the paper by default.
     out
         Folder for metrics, figures and data; the name of the experiment by default.
+    told
+        What differs from its own, as `body.limits=one`; `--list` tells of what.
     show
         Print a table of all experiments instead: what each does, where, on how many views, what may differ.
     """
@@ -100,6 +104,10 @@ def _experiment(
         return
     if name is None:
         raise CogmapError("no experiment is given; `cogmap experiment --list` tells which there are")
+    overrides = by_family(parse(told or []))
+    usual = experiments()[name].body if name in experiments() else ""
+    for family in overrides.keys() - {*FAMILIES}:
+        raise unknown(family, list(FAMILIES))
     result = run_experiment(
         name,
         Path(name) if out is None else out,
@@ -107,6 +115,7 @@ def _experiment(
         views=views,
         seed=seed,
         progress=sys.stderr.isatty(),
+        **{family: build(family, fields, usual=usual) for family, fields in overrides.items()},
     )
     tell(result.metrics, as_json=as_json)
 

@@ -9,14 +9,14 @@ import cv2
 import numpy as np
 from cyclopts import Parameter
 
-from arena import Arena, Camera, Disc, Nose, explore, gallery
+from arena import Arena, Camera, Disc, explore, gallery
 from arena.atomic import check_absent
 from arena.bodies.catalogue import bodies
 from arena.motions.catalogue import motions
 from cogmap.atomic import atomic_write
-from cogmap.commands.common import Json, Seed, tell
+from cogmap.commands.common import Json, Seed, Told, tell
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_choice
+from cogmap.experiments.parameters import build, by_family, parse, unknown
 from cogmap.plots import plot_room, plot_sheet
 
 
@@ -100,11 +100,12 @@ def _explore(
     path: Path | None = None,
     fit: bool | None = None,
     views: int | None = None,
-    camera: Literal["panoramic", "perspective"] = "panoramic",
+    camera: Literal["panoramic", "perspective", "overhead"] = "panoramic",
     width: int | None = None,
     height: int | None = None,
     nose_noise: float = 0.1,
     body: Annotated[str, Parameter(help=f"What moves: {', '.join(bodies())}.")] = "disc",
+    told: Told = None,
     seed: Seed = 0,
     as_json: Json = False,
 ) -> None:
@@ -112,7 +113,8 @@ def _explore(
 
     Examples: `cogmap explore furnished --out walk.zarr`; `cogmap explore pillar --views 5000 --out p.zarr`;
     `cogmap explore furnished --motion rotation --camera perspective --out spin.zarr`;
-    `cogmap explore open_field --motion replay --path rat.csv --fit --out rat.zarr`.
+    `cogmap explore open_field --motion replay --path rat.csv --fit --out rat.zarr`;
+    `cogmap explore furnished --motion babble --body arm --camera overhead --set body.limits=one --out arm`.
 
     Parameters
     ----------
@@ -130,22 +132,28 @@ def _explore(
     views
         How many to take; what the motion does by default, such as 17,000 brownian ones, or all of a path.
     camera
-        What it looks through: all around, or 90° ahead.
+        What it looks through: all around, 90° ahead, or down on it from above.
     width, height
-        Of the views, pixels; 360×60 all around and 320×240 ahead by default.
+        Of the views, pixels; 360×60 all around, 320×240 ahead and 64×64 from above by default.
     nose_noise
         Standard deviation of the log of the smelt concentration.
+    told
+        Any other parameter of motion, camera, nose or body, as `body.limits=one` or `motion.swing_every=100`.
     """
-    check_choice("motion", motion, tuple(motions()))
-    check_choice("body", body, tuple(bodies()))
-    way = {"odorant": odorant, "path": path, "fit": fit}
-    size = {"width": width, "height": height}
+    given = {
+        "motion": motion, "motion.odorant": odorant, "motion.path": path, "motion.fit": fit,
+        "camera": camera, "camera.width": width, "camera.height": height,
+        "nose.noise": nose_noise, "body": body,
+    }  # fmt: skip
+    parts = by_family({name: value for name, value in given.items() if value is not None} | parse(told or []))
+    for family in parts.keys() - {"motion", "camera", "nose", "body"}:
+        raise unknown(family, ["motion", "camera", "nose", "body"])
     recording = explore(
         Arena.load(arena),
-        motions()[motion](**{name: value for name, value in way.items() if value is not None}),
-        getattr(Camera, camera)(**{name: value for name, value in size.items() if value is not None}),
-        nose=Nose(noise=nose_noise),
-        body=bodies()[body](),
+        build("motion", parts["motion"]),
+        build("camera", parts["camera"]),
+        nose=build("nose", parts["nose"]),
+        body=build("body", parts["body"]),
         views=views,
         seed=seed,
         out=out,

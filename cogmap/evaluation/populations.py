@@ -11,7 +11,7 @@ import torch
 from jaxtyping import Float
 from numpy.typing import ArrayLike
 
-from arena import Arena, Disc, Recording
+from arena import Arena, Body, Recording
 from cogmap.errors import UntrustedMapWarning
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import BATCH, CognitiveMap
@@ -68,6 +68,6 @@ def competing_cells(
         return [layer.tuning(torch.from_numpy(np.asarray(batch, np.float32))).numpy() for batch in test]
 
 
-def reachable_places(room: Arena, body: Disc) -> Float[np.ndarray, "points 2"]:
+def reachable_places(room: Arena, body: Body) -> Float[np.ndarray, "points 2"]:
     """Draw places (m) that a body can reach, dense enough for every bin of a rate map to hold some."""
     return room.sample_free(20_000, body.radius, np.random.default_rng(0))

@@ -12,7 +12,8 @@ from typing import Any
 
 from filelock import FileLock
 
-from arena import Arena, Camera, Disc, Motion, Nose, Recording, explore
+from arena import Arena, Body, Disc, Motion, Nose, Recording, explore
+from arena.eye.base import AnyEye
 
 FRESH_SEED = 1000
 """Added to the seed for a fresh walk, on which what was learnt is scored."""
@@ -37,9 +38,9 @@ class Conditions:
     """To smell with."""
     motion: Motion | None = None
     """Way to move; the experiment's own when None."""
-    camera: Camera | None = None
+    camera: AnyEye | None = None
     """To look through; the experiment's own when None."""
-    body: Disc | None = None
+    body: Body | None = None
     """To move; the experiment's own when None."""
     map: Mapping[str, Any] = field(default_factory=dict)
     """Parameters of `CognitiveMap` that differ from the experiment's own."""
@@ -49,9 +50,9 @@ class Conditions:
     def explore(
         self,
         motion: Motion,
-        camera: Camera,
+        camera: AnyEye,
         *,
-        body: Disc | None = None,
+        body: Body | None = None,
         views: int | None = None,
         fresh: bool = False,
     ) -> Recording:

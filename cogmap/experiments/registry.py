@@ -39,6 +39,8 @@ class Experiment(NamedTuple):
     """Which of `nose`, `motion`, `camera`, `body` and `map` may differ from its own."""
     extra_rooms: tuple[str, ...] = ()
     """Rooms that it visits as well, unless told where to take place."""
+    body: str = "disc"
+    """Name of its own body, of which fields alone may be told."""
 
     @property
     def summary(self) -> str:
@@ -63,6 +65,7 @@ def experiment(
     any_room: bool = True,
     takes: tuple[str, ...] = (),
     extra_rooms: tuple[str, ...] = (),
+    body: str = "disc",
 ) -> Callable[[Run], Run]:
     """Register a function as the experiment of its name; the parameters are those of `Experiment`.
 
@@ -79,7 +82,7 @@ def experiment(
                 f"there is an experiment {run.__name__!r} in {known.run.__module__} already; "
                 f"rename that of {run.__module__}"
             )
-        _registered[run.__name__] = Experiment(run, room, views, any_room, takes, extra_rooms)
+        _registered[run.__name__] = Experiment(run, room, views, any_room, takes, extra_rooms, body)
         return run
 
     return register

@@ -1,21 +1,17 @@
 """Points of a sweep: parameters by name turned into what an experiment is called with."""
 
 import hashlib
-import inspect
 import json
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cached_property
 from typing import Any
 
-from arena import Arena, Camera, Nose
-from arena.bodies.catalogue import bodies
-from arena.motions.catalogue import motions
+from arena import Arena
 from cogmap.errors import CogmapError
+from cogmap.experiments.parameters import FAMILIES, build, by_family, fields_of, unknown
 from cogmap.experiments.registry import FEWEST, Experiment, experiments
 from cogmap.inputs import check_choice, checked_count
-from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.sweeps.plan import Plan, Shown
 
 
@@ -82,30 +78,23 @@ def points_of(plan: Plan) -> list[Point]:
 
 def _settle(name: str, chosen: Experiment, given: Mapping[str, Any]) -> dict[str, Any]:
     """Turn parameters into the arguments of a point that it does not share with the rest of its sweep."""
-    told: dict[str, dict[str, Any]] = {}
-    for parameter, value in given.items():
-        told.setdefault(parameter.partition(".")[0], {})[parameter] = value
-    build: dict[str, Callable[[dict[str, Any]], Any]] = {
-        "motion": lambda told: _of_kind(told, "motion", motions(), "brownian"),
-        "camera": _camera,
-        "body": lambda told: _of_kind(told, "body", bodies(), "disc"),
-        "nose": lambda told: Nose(**_fields(told, Nose.model_fields)),
-        "map": _map,
-    }
+    told = by_family(given)
     for family, (first, *_) in told.items():
-        if family not in {"views", "arena", *build}:
+        if family not in {"views", "arena", *FAMILIES}:
             known = ["views", "arena", "motion", "camera", "body", "nose.noise", "map.charts"]
-            raise _unknown(first, known)
+            raise unknown(first, known)
         if family == "arena" and not chosen.any_room:
             raise CogmapError(f"{name} takes place in rooms of its own; leave {first!r} out")
-        if family in build and family not in chosen.takes:
+        if family in FAMILIES and family not in chosen.takes:
             takes = ", ".join(("views", *(["arena"] if chosen.any_room else []), *chosen.takes))
             raise CogmapError(f"{name} does not take {first!r}; it takes {takes}")
     return {
         "views": checked_count("views", given.get("views", chosen.views), FEWEST),
         "room": _room(told.get("arena", {}), chosen.room),
         "any_room": "arena" in told,
-        "overrides": {family: build[family](told[family]) for family in build if family in told},
+        "overrides": {
+            family: build(family, told[family], usual=chosen.body) for family in FAMILIES if family in told
+        },
     }
 
 
@@ -114,41 +103,5 @@ def _room(told: dict[str, Any], usual: str) -> Arena:
     if not isinstance(source, str):
         raise CogmapError(f"arena is {source!r}; give the name of a room or the path of a TOML file")
     room = Arena.load(source)
-    changes = _fields(told, Arena.model_fields)
+    changes = fields_of(told, Arena.model_fields)
     return room.model_copy(update=changes) if changes else room
-
-
-def _of_kind(told: dict[str, Any], family: str, kinds: Mapping[str, Callable[..., Any]], usual: str) -> Any:
-    """Make what a registry has under the name that is given."""
-    kind = str(told.pop(family, usual))
-    check_choice(family, kind, tuple(kinds))
-    return kinds[kind](**_fields(told, inspect.signature(kinds[kind]).parameters))
-
-
-def _camera(told: dict[str, Any]) -> Camera:
-    kind = str(told.pop("camera", "panoramic"))
-    check_choice("camera", kind, ("panoramic", "perspective"))
-    known = [name for name in Camera.model_fields if name != "projection"]
-    return Camera(**getattr(Camera, kind)().model_dump() | _fields(told, known))
-
-
-def _map(told: dict[str, Any]) -> dict[str, int]:
-    known = [name for name in inspect.signature(CognitiveMap).parameters if name != "seed"]
-    return {name: checked_count(f"map.{name}", value) for name, value in _fields(told, known).items()}
-
-
-def _fields(told: Mapping[str, Any], known: Collection[str]) -> dict[str, Any]:
-    """Give what is told of a family by the names of its fields, all of which must be known."""
-    found = {}
-    for name, value in told.items():
-        family, _, field = name.partition(".")
-        if field not in known:
-            raise _unknown(name, [f"{family}.{item}" for item in known])
-        found[field] = value
-    return found
-
-
-def _unknown(name: str, known: list[str]) -> CogmapError:
-    near = get_close_matches(name, known, n=1)
-    hint = f"did you mean {near[0]!r}?" if near else f"choose one of {', '.join(known)}"
-    return CogmapError(f"unknown parameter {name!r}; {hint}")

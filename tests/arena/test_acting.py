@@ -3,10 +3,13 @@ import numpy as np
 import pytest
 
 from arena.acting import Journeys, journeys
+from arena.bodies.arm import Arm
 from arena.bodies.disc import Disc
 from arena.environment import Explorer
 from arena.errors import ArenaError
+from arena.eye.base import AnyEye
 from arena.eye.camera import Camera
+from arena.eye.overhead import Overhead
 from arena.motions.policy import Policy, Sensed
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
@@ -103,3 +106,19 @@ def test_bad_numbers() -> None:
         given = {"starts": STARTS, "most_steps": 1, **fields}
         with pytest.raises(ArenaError):
             journeys(ROOM, by_sight, EYE, **given)
+
+
+@pytest.mark.parametrize("eye", [Camera.panoramic(16, 4, noise=0.05), Overhead(16, 16, noise=0.05)])
+def test_arms_go_together_as_alone(eye: AnyEye) -> None:
+    arm, room = Arm(slip=0.05, motor_gains=(0.7, 1.0)), Arena.load("obstacles")
+    starts = arm.sample_free(room, 6, np.random.default_rng(0))
+
+    def gone(starts: np.ndarray) -> Journeys:
+        return journeys(room, by_sight, eye, starts, body=arm, most_steps=8, seed=3)
+
+    found, few = gone(starts), gone(starts[:2])
+    np.testing.assert_array_equal(few.joints, found.joints[:, :2])
+    np.testing.assert_allclose(found.joints[0], starts)
+    np.testing.assert_array_equal(found.poses[-1], arm.camera_poses(found.joints[-1]))
+    assert found.commands.shape == (8, 6, 2)
+    assert go().joints is None

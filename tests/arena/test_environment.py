@@ -11,10 +11,12 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from arena.bodies.arm import Arm
 from arena.bodies.disc import Disc
 from arena.environment import Explorer, Observation, OdourClimbed
 from arena.errors import ArenaError
 from arena.eye.camera import Camera
+from arena.eye.overhead import Overhead
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
 
@@ -368,3 +370,27 @@ def test_nothing_happens_before_the_first_reset() -> None:
         make().step(FORWARD)
     with pytest.raises(ArenaError, match="call reset"):
         make(render_mode="rgb_array").render()
+
+
+def test_any_body_is_steered_by_a_number_for_each_motor() -> None:
+    arm = Arm(limits="one")
+    env = gymnasium.make(
+        "arena/Explorer-v0", arena="furnished", body=arm, camera=Overhead(16, 16), render_mode="rgb_array"
+    )
+    check_env(env.unwrapped)
+    assert env.action_space.shape == (2,)
+    _, info = env.reset(options={"joints": (0.5, 1.0)})
+    np.testing.assert_allclose(info["joints"], [0.5, 1.0])
+    np.testing.assert_array_equal(info["pose"], arm.camera_poses(info["joints"][None])[0])
+    before = env.render()
+    for _ in range(40):
+        *_, info = env.step(np.array([0.5, 1.0], np.float32))
+    np.testing.assert_allclose(info["joints"], [0.5 + 40 * 0.05 * 0.5 * arm.max_turn, 2 * np.pi / 3])
+    assert info["touched"]
+    assert (env.render() != before).any(axis=2).sum() > 200
+    with pytest.raises(ArenaError, match=r"unknown options \['pose'\]; the only one is 'joints'"):
+        env.reset(options={"pose": (0, 0, 0)})
+    with pytest.raises(ArenaError, match="give joint_1, joint_2"):
+        env.reset(options={"joints": (0,)})
+    with pytest.raises(ArenaError, match="the Arm has no two wheels"):
+        make(body=arm, control="wheels")

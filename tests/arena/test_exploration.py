@@ -18,13 +18,18 @@ import numpy as np
 import pytest
 import zarr
 
+from arena.bodies.arm import Arm
 from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.exploration import explore
+from arena.eye.base import AnyEye
 from arena.eye.camera import Camera
+from arena.eye.overhead import Overhead
+from arena.motions.babble import Babble
 from arena.motions.base import Walk
 from arena.motions.brownian import Brownian
 from arena.motions.chemotaxis import Chemotaxis
+from arena.motions.policy import Sensed
 from arena.motions.replay import Replay
 from arena.motions.track import Track
 from arena.recordings import sharding
@@ -429,3 +434,34 @@ def test_progress_is_shown_on_stderr_only(capsys: pytest.CaptureFixture[str]) ->
     assert f"{VIEWS}/{VIEWS}" in shown.err
     go()
     assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("eye", [Camera.panoramic(24, 8, noise=0.02), Overhead(16, 12, noise=0.02)])
+def test_joints_are_recorded_in_memory_as_on_disk(tmp_path: Path, eye: AnyEye) -> None:
+    arm, room, nose = Arm(slip=0.05), Arena.load("furnished"), Nose(noise=0.0)
+    rec = explore(room, Babble(), eye, nose=nose, body=arm, views=300, seed=4)
+    np.testing.assert_array_equal(rec.poses, arm.camera_poses(rec.joints))
+    np.testing.assert_array_equal(rec.odours, room.odours.concentration(rec.poses[:, :2]).astype("f4"))
+    assert rec.without_truth().joints is None
+    stored = explore(room, Babble(), eye, nose=nose, body=arm, views=300, seed=4, out=tmp_path / "rec.zarr")
+    for name in ("views", "poses", "joints", "commands", "times"):
+        np.testing.assert_array_equal(getattr(stored, name)[:], getattr(rec, name))
+    kept = {"kind": "Arm", **arm.model_dump(mode="json")}
+    assert stored.attributes["body"] == kept
+
+
+def test_what_steers_a_disc_alone_says_so() -> None:
+    with pytest.raises(ArenaError, match="Brownian steers a disc, and this body is of kind Arm"):
+        explore(Arena.load("furnished"), Brownian(), Camera.panoramic(8, 2), body=Arm(), views=3)
+
+
+def test_a_policy_moves_joints_and_stops() -> None:
+    def policy(sensed: Sensed) -> np.ndarray | None:
+        return None if sensed["view"][0, 0, 0] == 255 else np.array([0.5, -0.5])
+
+    arm = Arm()
+    rec = explore(
+        Arena.load("furnished"), policy, Overhead(16, 16), body=arm, views=5, start=(0.0, 1.0), dt=0.1
+    )
+    wanted = [0.0, 1.0] + 0.1 * 0.5 * arm.max_turn * np.arange(5)[:, None] * [1, -1]
+    np.testing.assert_allclose(rec.joints, wanted, atol=1e-12)

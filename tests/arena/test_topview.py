@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from arena.bodies.arm import Arm
 from arena.rooms.arena import Arena
 from arena.topview import TopView
 
@@ -51,3 +52,13 @@ def test_trail_is_drawn_and_forgotten() -> None:
     picture = view.draw((0.5, 1.0, 0.0), 0.1, trail)
     assert pixel(view, picture, -1.0, 0.3)[2] > pixel(view, picture, -1.0, 0.3)[0]
     np.testing.assert_array_equal(pixel(view, view._room, -1.0, 0.3), (226, 222, 214))
+
+
+def test_links_are_drawn_as_thick_as_they_are() -> None:
+    view, arm, joints = TopView(Arena.load("open_field"), 1200), Arm(), np.array([[1.0, -2.0]])
+    (links,), (pose,) = arm.segments(joints), arm.camera_poses(joints)
+    picture = view.draw(tuple(pose.tolist()), arm.radius, np.empty((0, 2)), links)
+    for start, end in links:
+        assert pixel(view, picture, *(0.5 * (start + end))) == BODY
+    area = (picture != view._room).any(axis=2).sum() / view._scale**2
+    assert area == pytest.approx(1.8 * 0.16 + np.pi * 0.08**2, rel=0.1)

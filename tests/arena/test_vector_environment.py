@@ -7,9 +7,11 @@ from gymnasium.vector import AutoresetMode
 
 from arena.bodies.disc import Disc
 from arena.bodies.heavy_disc import HeavyDisc
+from arena.bodies.neck import Neck
 from arena.environment import Observation
 from arena.errors import ArenaError
 from arena.eye.camera import Camera
+from arena.eye.overhead import Overhead
 from arena.smell.nose import Nose
 from arena.vector_environment import VectorExplorer
 
@@ -54,6 +56,7 @@ def brightening(before: Observation, after: Observation) -> float:
         {"camera": Camera.panoramic(16, 4, noise=0.1)},
         {"body": Disc(slip=0.1, wheel_gains=(0.7, 1.0), swapped=True, delay=0.07)},
         {"body": HeavyDisc(delay=0.05)},
+        {"arena": "furnished", "body": Neck(base=Disc(slip=0.1)), "camera": Overhead(16, 16, noise=0.1)},
     ],
 )
 def test_each_is_as_alone_bit_by_bit(mode: AutoresetMode, fields: dict[str, Any]) -> None:

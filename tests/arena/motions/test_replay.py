@@ -3,6 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from arena.bodies.arm import Arm
 from arena.bodies.disc import Disc
 from arena.errors import ArenaError
 from arena.motions.base import Walk
@@ -198,3 +199,19 @@ def test_body_that_fits_nowhere_is_refused(save) -> None:
 def test_bad_parameters_are_refused(wrong: dict[str, object], said: str) -> None:
     with pytest.raises(ArenaError, match=said):
         Replay(**{"path": "path.csv", **wrong})
+
+
+def test_joints_go_through_their_recorded_configurations(tmp_path: Path) -> None:
+    path, room, arm = tmp_path / "arm.csv", Arena.load("furnished"), Arm(limits="one")
+    path.write_text("t,joint_1,joint_2\n" + "".join(f"{k / 10},{k},{-k / 5}\n" for k in range(9)), "utf-8")
+    walk = Replay(path=path, interval=0.2).walk(room, arm, None, np.random.default_rng(0))
+    np.testing.assert_allclose(walk.times, [0, 0.2, 0.4, 0.6, 0.8])
+    wanted = np.angle(np.exp(1j * np.arange(0, 9, 2)))
+    np.testing.assert_allclose(walk.poses, np.column_stack([wanted, -np.arange(0, 9, 2) / 5]), atol=1e-12)
+    for fields, body, message in (
+        ({}, Arm(links=(0.5, 0.5, 0.5)), "no column joint_3"),
+        ({"clip": True}, arm, "are of a disc's path"),
+        ({}, Arm(limits=(None, (-1.0, 1.0))), "cannot start"),
+    ):
+        with pytest.raises(ArenaError, match=message):
+            Replay(path=path, **fields).walk(room, body, None, np.random.default_rng(0))
