@@ -12,8 +12,9 @@ from cogmap.graph.points import checked_cloud
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
 
-FLOOR = 1e-9
-"""Share of a neighbourhood's variance below which there is only rounding."""
+FLOOR = 1e-3
+"""Share of a neighbourhood's variance below which no direction counts: curvature and noise, however they
+compare."""
 
 
 class LocalDimension(NamedTuple):
@@ -66,9 +67,8 @@ def local_dimension(
             around -= around.mean(axis=1, keepdims=True)
             variances = np.square(np.linalg.svd(around, compute_uv=False))
             shares[block] = (variances / variances.sum(axis=1, keepdims=True))[:, : most + 1]
-    # Rounding alone makes ratios beyond all bounds.
-    shares = np.maximum(shares, FLOOR)
-    votes = np.bincount((shares[:, :-1] / shares[:, 1:]).argmax(axis=1), minlength=most) / len(points)
+    counted = np.maximum(shares, FLOOR)
+    votes = np.bincount((counted[:, :-1] / counted[:, 1:]).argmax(axis=1), minlength=most) / len(points)
     return LocalDimension(int(votes.argmax()) + 1, float(votes.max()), np.median(shares, axis=0))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Int
+from jaxtyping import Float, Int
 
 from arena import Arm, Axis, Body, Camera, Recording
 from arena.angles import wrap_angle
@@ -30,7 +30,7 @@ def three_links(conditions: Conditions) -> Result:
     body, eye = Arm(links=(0.7, 0.6, 0.5)), Camera.panoramic(90, 15, noise=0.01)
     trial = BodyTrial.of(conditions, body, eye, memory=12_000, truth=hand)
     postures = replace(trial, truth=all_axes)
-    pairs = look_alikes(trial)
+    pairs = look_alikes(trial.coordinates.codes_, postures.joints)
     shown = pairs[np.linspace(0, len(pairs) - 1, min(3, len(pairs))).astype(int)]
     result = trial.result("three links")
     metrics = {
@@ -59,10 +59,11 @@ def hand(body: Body, recording: Recording) -> Truth:
     return axes, recording.require("poses")
 
 
-def look_alikes(trial: BodyTrial) -> Int[np.ndarray, "pairs 2"]:
-    """Find, for each kept view, one of its five nearest by looks whose joints differ by more than `APART`."""
-    joints = all_axes(trial.body, trial.kept)[1]
-    near = nearest_points(trial.coordinates.codes_, 5).indices
+def look_alikes(
+    codes: Float[np.ndarray, "views components"], joints: Float[np.ndarray, "views joints"]
+) -> Int[np.ndarray, "pairs 2"]:
+    """Pair views with one of their five nearest whose joints (rad) differ by more than `APART`, if one does."""
+    near = nearest_points(codes, 5).indices
     apart = np.abs(wrap_angle(joints[near] - joints[:, None])).max(axis=2)
     found = np.flatnonzero(apart.max(axis=1) > APART)
     return np.column_stack([found, near[found, (apart[found] > APART).argmax(axis=1)]])

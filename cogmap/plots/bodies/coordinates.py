@@ -60,7 +60,7 @@ def plot_coordinates(
         raise CogmapError(f"there are {coordinates.shape[1]} coordinates but {len(names)} names; name each")
     drawn = coordinates[:, :2]
     if drawn.shape[1] == 1:
-        drawn = np.hstack([drawn, joints[:, :1]])
+        drawn = np.column_stack([drawn, _for_people(joints[:, 0], axes[0])])
         names = [names[0], _label(axes[0])]
     phases = [name.startswith("phase") for name in names[:2]]
     figure, panels = new_panels(
@@ -74,7 +74,7 @@ def plot_coordinates(
         if circle:
             heading_bar(panel, _label(axis))
         else:
-            dots.set_array(np.rad2deg(joint) if axis.unit == "rad" else joint)
+            dots.set_array(_for_people(joint, axis))
             dots.set_cmap("viridis")
             colour_bar(panel, dots, _label(axis))
     for panel, title in zip(panels[0], ["what is seen", *(axis.name for axis in axes)], strict=True):
@@ -117,6 +117,10 @@ def _lay_out(
 def _ends(values: Float[np.ndarray, " views"]) -> tuple[float, float]:
     margin = 0.02 * float(np.ptp(values))
     return float(values.min()) - margin, float(values.max()) + margin
+
+
+def _for_people(joint: Float[np.ndarray, " views"], axis: Axis) -> Float[np.ndarray, " views"]:
+    return np.rad2deg(joint) if axis.unit == "rad" else joint
 
 
 def _label(axis: Axis) -> str:
