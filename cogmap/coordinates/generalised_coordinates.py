@@ -29,8 +29,11 @@ from cogmap.shape.dimension import LocalDimension, local_dimension
 from cogmap.shape.homology import Betti, betti
 from cogmap.shape.lattice import short_basis
 
-FEWEST = 200
+FEWEST = 400
 """Fewer views than this have no shape to speak of."""
+KEPT = 4
+"""One in so many views is kept at most: of more, those that were babbled where there are hardly any others
+are farther from each other than the rest, and make holes."""
 MAJORITY, CLEAR = 0.5, 0.9
 """Share of the neighbourhoods that must agree on the dimension, and with which no other scale is tried."""
 ONE_SIDED = 5
@@ -62,8 +65,8 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
     components
         Of the code that views are compared by.
     memory
-        Views kept at most, those farthest from each other (`EvenMemory`), and never more than half of them:
-        4,000 are enough for two degrees of freedom, 12,000 for three.
+        Views kept at most, those farthest from each other (`EvenMemory`), and never more than a quarter of
+        them: of 12,000 views 3,000 are enough for two degrees of freedom, of 17,000 4,000 for three.
     eye
         "panorama", or "perspective" for any picture with borders; told from the views when None.
     seed
@@ -112,7 +115,7 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
             raise CogmapError(f"{views.shape[0]} views are too few to show a shape; give at least {FEWEST}")
         self._code = ViewCode(self.components, eye=self.eye, seed=self.seed).fit(views)
         codes = self._code.transform(views)
-        size = min(checked_count("memory", self.memory, FEWEST // 2), len(codes) // 2)
+        size = min(checked_count("memory", self.memory, FEWEST // KEPT), len(codes) // KEPT)
         memory = EvenMemory(size).partial_fit(np.arange(len(codes)), codes)
         self.eye_, self.indices_, self.codes_ = self._code.eye_, memory.indices_.copy(), memory.codes_.copy()
         self.dimension_, self.vote_, self.spectrum_ = _clearest_dimension(self.codes_)
@@ -257,7 +260,7 @@ def _clearest_dimension(codes: Float[np.ndarray, "kept components"]) -> LocalDim
     farther apart show how it moves.
     """
     clearest = local_dimension(codes)
-    while clearest.vote < CLEAR and len(codes) >= FEWEST:
+    while clearest.vote < CLEAR and len(codes) >= 200:
         codes = EvenMemory(len(codes) // 2).partial_fit(codes).codes_
         clearest = max(clearest, local_dimension(codes), key=lambda found: found.vote)
     return clearest

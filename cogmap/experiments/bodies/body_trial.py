@@ -58,12 +58,11 @@ class BodyTrial:
         body: Body,
         eye: AnyEye,
         *,
-        memory: int = 4000,
         truth: Callable[[Body, Recording], Truth] = all_axes,
     ) -> BodyTrial:
         """Let a body babble twice before an eye or with it, unless told with others, and find coordinates."""
         walk, fresh = (conditions.explore(Babble(), eye, body=body, fresh=again) for again in (False, True))
-        found = GeneralisedCoordinates(memory=memory, seed=conditions.seed).fit(walk.views)
+        found = GeneralisedCoordinates(seed=conditions.seed).fit(walk.views)
         return cls(conditions.body or body, walk, fresh, found, truth)
 
     @cached_property

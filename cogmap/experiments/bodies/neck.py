@@ -12,7 +12,7 @@ from cogmap.experiments.bodies.body_trial import BodyTrial, Truth, all_axes
 def neck(conditions: Conditions) -> Result:
     """See only the sum of two joints of a redundant mechanism, until it sees its own deck."""
     eye = Camera.panoramic(90, 15, noise=0.01)
-    return BodyTrial.of(conditions, Neck(), eye, memory=5_000, truth=visible_axes).result("neck")
+    return BodyTrial.of(conditions, Neck(), eye, truth=visible_axes).result("neck")
 
 
 def visible_axes(body: Body, recording: Recording) -> Truth:

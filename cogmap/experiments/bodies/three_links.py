@@ -28,7 +28,7 @@ def three_links(conditions: Conditions) -> Result:
     `posture_median_deg` is what reading joints from them comes to.
     """
     body, eye = Arm(links=(0.7, 0.6, 0.5)), Camera.panoramic(90, 15, noise=0.01)
-    trial = BodyTrial.of(conditions, body, eye, memory=12_000, truth=hand)
+    trial = BodyTrial.of(conditions, body, eye, truth=hand)
     postures = replace(trial, truth=all_axes)
     pairs = look_alikes(trial.coordinates.codes_, postures.joints)
     shown = pairs[np.linspace(0, len(pairs) - 1, min(3, len(pairs))).astype(int)]
@@ -62,7 +62,7 @@ def hand(body: Body, recording: Recording) -> Truth:
 def look_alikes(
     codes: Float[np.ndarray, "views components"], joints: Float[np.ndarray, "views joints"]
 ) -> Int[np.ndarray, "pairs 2"]:
-    """Pair views with one of their five nearest whose joints (rad) differ by more than `APART`, if one does."""
+    """Pair views with one of their five nearest whose joints (rad) differ by more than `APART`, if any."""
     near = nearest_points(codes, 5).indices
     apart = np.abs(wrap_angle(joints[near] - joints[:, None])).max(axis=2)
     found = np.flatnonzero(apart.max(axis=1) > APART)

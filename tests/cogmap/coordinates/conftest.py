@@ -24,7 +24,7 @@ def spots(places: np.ndarray, colours: tuple[int, int, int] = (200, 90, 40)) -> 
 
 @pytest.fixture(scope="package")
 def angles() -> np.ndarray:
-    return np.random.default_rng(1).uniform(-np.pi, np.pi, 600)
+    return np.random.default_rng(1).uniform(-np.pi, np.pi, 1000)
 
 
 @pytest.fixture(scope="package")
@@ -36,5 +36,5 @@ def ring(angles: np.ndarray) -> np.ndarray:
 @pytest.fixture(scope="package")
 def sheet() -> tuple[np.ndarray, np.ndarray]:
     """What a fixed eye sees of a carriage on rails that cross, and where the carriage is."""
-    places = np.random.default_rng(2).uniform(-1, 1, size=(900, 2))
+    places = np.random.default_rng(2).uniform(-1, 1, size=(1500, 2))
     return spots(places), places

@@ -25,7 +25,7 @@ def test_a_ring_has_one_phase(turning: GeneralisedCoordinates, ring: np.ndarray,
     assert (turning.dimension_, turning.betti_.numbers, turning.reason_) == (1, (1, 1, 0), "")
     assert turning.eye_ == "perspective"
     assert turning.vote_ > 0.8
-    assert len(turning.indices_) == 300
+    assert len(turning.indices_) == 250
     phase = turning.transform(ring)[:, 0]
     assert max(abs(np.exp(1j * (phase - sign * angles)).mean()) for sign in (-1, 1)) > 0.99
     assert list(turning.get_feature_names_out()) == ["phase_0"]
@@ -91,8 +91,8 @@ def test_what_is_no_product_is_told(
 
 
 def test_bad_input_gets_one_sentence(turning: GeneralisedCoordinates, ring: np.ndarray) -> None:
-    with pytest.raises(CogmapError, match="100 views are too few"):
-        GeneralisedCoordinates().fit(ring[:100])
+    with pytest.raises(CogmapError, match="300 views are too few"):
+        GeneralisedCoordinates().fit(ring[:300])
     with pytest.raises(CogmapError, match="12×24 pixels"):
         turning.transform(ring[:, :12])
     with pytest.raises(CogmapError, match="memory is 10"):

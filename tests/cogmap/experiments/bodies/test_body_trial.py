@@ -10,7 +10,7 @@ EYE = Camera.panoramic(45, 8, noise=0.01)
 
 @pytest.fixture(scope="module")
 def trial() -> BodyTrial:
-    conditions = Conditions(Arena.load("furnished"), 800, seed=2)
+    conditions = Conditions(Arena.load("furnished"), 1600, seed=2)
     return BodyTrial.of(conditions, Turntable(), EYE)
 
 
@@ -24,7 +24,7 @@ def test_a_turntable_is_a_circle(trial: BodyTrial) -> None:
 
 
 def test_what_is_scored_is_what_was_kept(trial: BodyTrial) -> None:
-    walk = explore(Arena.load("furnished"), Babble(), EYE, body=Turntable(), views=800, seed=2)
+    walk = explore(Arena.load("furnished"), Babble(), EYE, body=Turntable(), views=1600, seed=2)
     np.testing.assert_array_equal(trial.walk.require("joints"), walk.require("joints"))
     np.testing.assert_array_equal(trial.joints, walk.require("joints")[trial.coordinates.indices_])
     np.testing.assert_array_equal(trial.kept.views, walk.views[trial.coordinates.indices_])
@@ -40,7 +40,7 @@ def test_figures_and_table(trial: BodyTrial) -> None:
 
 
 def test_body_of_the_conditions_goes_first() -> None:
-    conditions = Conditions(Arena.load("furnished"), 300, body=Rail(length=1.0))
+    conditions = Conditions(Arena.load("furnished"), 400, body=Rail(length=1.0))
     trial = BodyTrial.of(conditions, Turntable(), EYE)
     assert [axis.name for axis in trial.axes] == ["position"]
     assert trial.metrics["joints"] == ["position"]
