@@ -31,7 +31,8 @@ def three_links(conditions: Conditions) -> Result:
     trial = BodyTrial.of(conditions, body, eye, truth=hand)
     postures = replace(trial, truth=all_axes)
     pairs = look_alikes(trial.coordinates.codes_, postures.joints)
-    shown = pairs[np.linspace(0, len(pairs) - 1, min(3, len(pairs))).astype(int)]
+    # of those most alike, pairs that are not each other's
+    shown = pairs[np.linspace(0, len(pairs) // 10, min(3, len(pairs))).astype(int)]
     result = trial.result("three links")
     metrics = {
         **result.metrics,
@@ -62,8 +63,13 @@ def hand(body: Body, recording: Recording) -> Truth:
 def look_alikes(
     codes: Float[np.ndarray, "views components"], joints: Float[np.ndarray, "views joints"]
 ) -> Int[np.ndarray, "pairs 2"]:
-    """Pair views with one of their five nearest whose joints (rad) differ by more than `APART`, if any."""
-    near = nearest_points(codes, 5).indices
+    """Pair views with one of their five nearest whose joints (rad) differ by more than `APART`, if any.
+
+    Those most alike come first.
+    """
+    near, distances = nearest_points(codes, 5)
     apart = np.abs(wrap_angle(joints[near] - joints[:, None])).max(axis=2)
     found = np.flatnonzero(apart.max(axis=1) > APART)
-    return np.column_stack([found, near[found, (apart[found] > APART).argmax(axis=1)]])
+    which = (apart[found] > APART).argmax(axis=1)
+    order = np.argsort(distances[found, which], kind="stable")
+    return np.column_stack([found, near[found, which]])[order]
