@@ -70,11 +70,11 @@ def plot_coordinates(
     _lay_out(panels[0, 0], drawn, views, limits)
     for panel, joint, axis in zip(panels[0, 1:], joints.T, axes, strict=True):
         circle = axis.kind == "circle"
-        dots = panel.scatter(*drawn.T, s=3, linewidths=0, c=direction_colours(joint) if circle else joint)
+        colours = direction_colours(joint) if circle else _for_people(joint, axis)
+        dots = panel.scatter(*drawn.T, s=3, linewidths=0, c=colours)
         if circle:
             heading_bar(panel, _label(axis))
         else:
-            dots.set_array(_for_people(joint, axis))
             dots.set_cmap("viridis")
             colour_bar(panel, dots, _label(axis))
     for panel, title in zip(panels[0], ["what is seen", *(axis.name for axis in axes)], strict=True):

@@ -5,6 +5,7 @@ from arena import Axis
 from cogmap.errors import CogmapError
 from cogmap.plots.bodies.coordinates import plot_coordinates
 
+HINGE = Axis("hinge", "line", "rad", (-1.0, 1.0))
 CIRCLE, LINE = Axis("shoulder", "circle", "rad"), Axis("carriage", "line", "m", (0.0, 2.0))
 
 
@@ -33,6 +34,12 @@ def test_one_coordinate_is_drawn_over_the_joint() -> None:
     )
     assert figure.axes[1].get_ylabel() == "shoulder (°)"
     np.testing.assert_allclose(figure.axes[1].collections[0].get_offsets()[:, 1], np.rad2deg([1, 1.5, 2]))
+
+
+def test_a_hinge_is_coloured_in_degrees() -> None:
+    views, joints = np.zeros((2, 4, 4, 3), np.uint8), np.array([[-1.0], [0.5]])
+    dots = plot_coordinates(joints @ [[1.0, 2.0]], ["height_0", "height_1"], views, joints, [HINGE]).axes[1]
+    assert dots.collections[0].get_clim() == pytest.approx((np.rad2deg(-1), np.rad2deg(0.5)))
 
 
 def test_names_that_do_not_fit() -> None:
