@@ -11,18 +11,17 @@ import numpy as np
 from jaxtyping import Float, UInt8
 from pydantic import Field
 
-from arena.bodies.base import POSE, Body
+from arena.bodies.base import POSE, Body, Placed
 from arena.bodies.disc import Disc
 from arena.errors import ArenaError
-from arena.explorers import Explorers, Observation
-from arena.eye.base import AnyEye
+from arena.explorers import Observation
+from arena.eye.base import AnyEye, see
 from arena.eye.camera import Camera
 from arena.rooms.arena import Arena
 from arena.settings import Settings
 from arena.smell.nose import Nose
 from arena.topview import TopView
 
-_ONE = np.zeros(1, int)
 _COUNTS = ("nothing", "one number", "two numbers", "three numbers", "four numbers")
 
 Reward = Callable[[Observation, Observation], float]
@@ -141,47 +140,36 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
             }
         )
         self._top = TopView(self.arena)
-        self._one = Explorers(self.arena, camera, nose=nose, body=body, count=1)
-        self._sensed: Observation | None = None
+        self._placed: Placed | None = None
+        self._now = np.zeros(1)
 
     def reset(
         self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode, where the options say or anywhere in free space."""
         super().reset(seed=seed)
-        self._one.begin(_ONE, [self.start(options or {})], [self.np_random])
+        self._placed = self.body.place(self.arena, self.start(options or {}), self.np_random)
+        self._sniffer = self.nose.sniffer(len(self.arena.sources), self.np_random)
+        self._now[0] = 0.0
         self._trail: list[tuple[float, float]] = []
-        return self._sense()
+        return self._sense(self._placed, touched=False)
 
     def start(self, options: Mapping[str, Any]) -> tuple[float, ...]:
         """Read the options of `reset`, or draw a start from free space."""
         drawn = _start(options, self.body)
         return drawn or tuple(self.body.sample_free(self.arena, 1, self.np_random)[0].tolist())
 
-    def velocities(self, actions: Float[np.ndarray, "some motors"]) -> Float[np.ndarray, "some motors"]:
-        """Turn actions into what the motors should do, m/s or rad/s.
-
-        Raises
-        ------
-        ArenaError
-            For actions that are not finite.
-        """
-        if not np.isfinite(actions).all():
-            raise ArenaError("some actions are not finite; give numbers between -1 and 1")
+    def velocities(self, actions: Float[np.ndarray, "... motors"]) -> Float[np.ndarray, "... motors"]:
+        """Turn actions into what the motors should do, m/s or rad/s."""
         if self.control == "wheels" and isinstance(self.body, Disc):
-            wheels = (actions * self.body.max_speed).tolist()
-            return np.array([self.body.from_wheels(left, right) for left, right in wheels]).reshape(-1, 2)
+            wheels = (actions * self.body.max_speed).reshape(-1, 2).tolist()
+            rolled = [self.body.from_wheels(left, right) for left, right in wheels]
+            return np.array(rolled).reshape(actions.shape)
         return self.body.velocities(actions)
-
-    def truth(self, explorers: Explorers, which: np.ndarray) -> dict[str, np.ndarray]:
-        """Tell where these are, and whether something stopped them."""
-        known = {"pose": explorers.poses(which), "touched": explorers.touched(which)}
-        return known if self.body.axes == POSE else {**known, "joints": explorers.configurations(which)}
 
     def step(self, action: np.ndarray) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
         """Obey for `dt` seconds, then look and smell."""
-        before = self._sensed
-        if before is None:
+        if self._placed is None:
             raise ArenaError("the animal is nowhere yet; call reset() before the first step()")
         command = np.asarray(action, float)
         if command.shape != self.action_space.shape:
@@ -189,19 +177,23 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
             raise ArenaError(
                 f"the action has shape {command.shape}; {self.control} takes {wanted} between -1 and 1"
             )
-        self._one.act(_ONE, self.velocities(command[None]), self.dt)
-        after, info = self._sense()
+        touched = self._placed.go(self.velocities(command).tolist(), self.dt)
+        self._now[0] += self.dt
+        before = self._sensed
+        after, info = self._sense(self._placed, touched=touched)
         return after, self.reward(before, after), False, False, info
 
     def render(self) -> UInt8[np.ndarray, "height width 3"] | None:
         """Draw what the animal sees beside where it is."""
         if self.render_mode is None:
             return None
-        if self._sensed is None:
+        if self._placed is None:
             raise ArenaError("the animal is nowhere yet; call reset() before render()")
         view = self._sensed["view"]
-        there, pose = self._one.configurations(_ONE), self._one.poses(_ONE)[0].tolist()
-        links = None if self.body.axes == POSE else self.body.segments(there)[0]
+        there = np.array([self._placed.configuration])
+        pose, links = self.body.camera_poses(there)[0].tolist(), None
+        if self.body.axes != POSE:
+            links = self.body.segments(there)[0]
         top = self._top.draw(tuple(pose), self.body.radius, np.array(self._trail), links)
         rows = len(top)
         # A strip is many times as wide as high: no more than two squares of the frame.
@@ -213,12 +205,17 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         frame[above : above + size[1]] = shown
         return np.hstack([frame, top])
 
-    def _sense(self) -> tuple[Observation, dict[str, Any]]:
-        self._sensed = {name: values[0] for name, values in self._one.sense(_ONE).items()}
-        known = {name: values[0] for name, values in self.truth(self._one, _ONE).items()}
+    def _sense(self, placed: Placed, *, touched: bool) -> tuple[Observation, dict[str, Any]]:
+        there = np.array([placed.configuration])
+        poses = self.body.camera_poses(there)
+        view = np.empty((1, self.camera.height, self.camera.width, 3), np.uint8)
+        see(self.camera, self.arena, self.body, there, out=view, rng=self.np_random)
+        odour = self._sniffer.smell(self.arena.odours.concentration(poses[:, :2]), self._now)[0]
         if self.render_mode is not None:
-            self._trail.append(tuple(known["pose"][:2].tolist()))
-        return self._sensed, {**known, "touched": bool(known["touched"])}
+            self._trail.append((poses[0, 0], poses[0, 1]))
+        self._sensed = {"view": view[0], "odour": odour}
+        joints = {} if self.body.axes == POSE else {"joints": there[0]}
+        return self._sensed, {"pose": poses[0], "touched": touched, **joints}
 
 
 def _start(options: Mapping[str, Any], body: Body) -> tuple[float, ...] | None:

@@ -12,6 +12,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
+from arena.bodies.base import POSE
 from arena.environment import Explorer, OdourClimbed
 from arena.errors import ArenaError
 from arena.explorers import Explorers, Observation
@@ -137,6 +138,8 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         self._steps[which], self._done[which] = 0, False
 
     def _move(self, which: np.ndarray, actions: np.ndarray) -> None:
+        if not np.isfinite(actions[which]).all():
+            raise ArenaError("some actions are not finite; give numbers between -1 and 1")
         self._explorers.act(which, self.explorer.velocities(actions[which]), self.explorer.dt)
         self._steps[which] += 1
 
@@ -149,7 +152,11 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
     def _truth(self, which: np.ndarray) -> Truth:
         told, there = dict[str, np.ndarray](), np.zeros(self.num_envs, bool)
         there[which] = True
-        for name, known in self.explorer.truth(self._explorers, which).items():
+        explorers = self._explorers
+        truth = {"pose": explorers.poses(which), "touched": explorers.touched(which)}
+        if explorers.body.axes != POSE:
+            truth["joints"] = explorers.configurations(which)
+        for name, known in truth.items():
             told[name] = np.zeros((self.num_envs, *known.shape[1:]), known.dtype)
             told[name][which] = known
             told[f"_{name}"] = there.copy()

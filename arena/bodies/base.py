@@ -1,5 +1,6 @@
 """The contract of a body: axes, what it can be commanded to do, and where it puts the eye."""
 
+import math
 from collections.abc import Sequence
 from typing import Any, Literal, NamedTuple, Protocol, runtime_checkable
 
@@ -12,6 +13,8 @@ from arena.rooms.arena import Arena
 
 TOLERANCE = 1e-3
 """How far (m) a start may reach beyond free space."""
+
+_ONE = np.zeros(1, int)
 
 Unit = Literal["m", "rad"]
 Configurations = Float[np.ndarray, "bodies axes"]
@@ -61,6 +64,24 @@ class AtLarge(Protocol):
 
 
 @runtime_checkable
+class Placed(Protocol):
+    """One body in a room."""
+
+    @property
+    def configuration(self) -> tuple[float, ...]:
+        """Where it is."""
+
+    def go(self, velocities: Sequence[float], dt: float) -> bool:
+        """Let its motors turn for dt (s) by m/s or rad/s: give whether something stopped it.
+
+        Raises
+        ------
+        ArenaError
+            For velocities that are not finite, or a dt that is not positive.
+        """
+
+
+@runtime_checkable
 class Body(Protocol):
     """A mechanism in a room: a value, whose configuration is a number on each of its axes.
 
@@ -101,11 +122,52 @@ class Body(Protocol):
     def segments(self, configurations: Configurations) -> Segments:
         """Place what can be seen of it from outside."""
 
+    def place(
+        self, arena: Arena, configuration: tuple[float, ...], rng: np.random.Generator | None = None
+    ) -> Placed:
+        """Put it into a room; its slip is drawn from the generator.
+
+        Raises
+        ------
+        ArenaError
+            Where it cannot start, and for slip without a generator.
+        """
+
     def at_large(self, arena: Arena, count: int) -> AtLarge:
-        """Give the physics of this many of its kind."""
+        """Give the physics of this many of its kind, at no place yet."""
 
     def model_dump(self) -> dict[str, Any]:
         """Give the parameters."""
+
+
+class Alone:
+    """One body of any kind in a room: a crowd of one."""
+
+    def __init__(
+        self, body: Body, arena: Arena, configuration: tuple[float, ...], rng: np.random.Generator | None
+    ) -> None:
+        start = np.array([configuration], float)
+        check_starts(body, arena, start)
+        self._bodies, self._rngs = body.at_large(arena, 1), [] if rng is None else [rng]
+        self._bodies.begin(_ONE, start)
+
+    @property
+    def configuration(self) -> tuple[float, ...]:
+        """Where it is."""
+        return tuple(self._bodies.configurations[0].tolist())
+
+    def go(self, velocities: Sequence[float], dt: float) -> bool:
+        """Let its motors turn for dt (s) by m/s or rad/s: give whether something stopped it.
+
+        Raises
+        ------
+        ArenaError
+            For velocities that are not finite, or a dt that is not positive.
+        """
+        if not (all(map(math.isfinite, velocities)) and 0 < dt < math.inf):
+            raise ArenaError(f"cannot go at {list(velocities)} for {dt} s; give finite numbers and dt > 0")
+        self._bodies.step(_ONE, np.array([velocities], float), dt, self._rngs)
+        return bool(self._bodies.touched[0])
 
 
 def wrapped(body: Body, values: np.ndarray) -> np.ndarray:
@@ -117,6 +179,12 @@ def wrapped(body: Body, values: np.ndarray) -> np.ndarray:
 def joints_of(body: Body, configurations: np.ndarray) -> np.ndarray | None:
     """Give what poses do not tell: the configurations of a body, or None if these are its poses."""
     return None if body.axes == POSE else configurations
+
+
+def check_generator(slip: float, rng: np.random.Generator | None) -> None:
+    """Raise an `ArenaError` for motors that slip (a share) without a generator."""
+    if slip and rng is None:
+        raise ArenaError(f"the motors slip by {slip:g}; give `rng`, a numpy.random.Generator")
 
 
 def check_starts(body: Body, arena: Arena, configurations: np.ndarray) -> None:

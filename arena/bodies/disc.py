@@ -1,6 +1,7 @@
 """The body: a disc with differential drive (two wheels), which walls stop."""
 
 import math
+from collections.abc import Sequence
 from typing import Annotated, ClassVar
 
 import numpy as np
@@ -8,7 +9,16 @@ from jaxtyping import Bool, Float
 from pydantic import Field
 
 from arena.angles import wrap_angle
-from arena.bodies.base import POSE, TOLERANCE, Axis, Configurations, Segments, Unit, check_starts
+from arena.bodies.base import (
+    POSE,
+    TOLERANCE,
+    Axis,
+    Configurations,
+    Segments,
+    Unit,
+    check_generator,
+    check_starts,
+)
 from arena.bodies.motors import Motors, Rollers
 from arena.bodies.rolling import Limits, look_ahead, roll
 from arena.errors import ArenaError
@@ -83,6 +93,16 @@ class Drive:
         self._x, self._y, self._heading, self.speed, self.turn, away = self._state.tolist()
         self.contact = None if math.isnan(away) else away
         return self.contact is not None
+
+    @property
+    def configuration(self) -> Pose:
+        """Its pose."""
+        return self.pose
+
+    def go(self, velocities: Sequence[float], dt: float) -> bool:
+        """Step at a speed (m/s) and a turn rate (rad/s) for dt (s): give whether something stopped it."""
+        speed, turn = velocities
+        return self.step(speed, turn, dt)
 
     def ahead(self, reach: float) -> float | None:
         """Look straight ahead from the centre: give the normal (rad) of what is within reach (m), or None."""
@@ -192,7 +212,9 @@ class Disc(Settings):
         """
         return 0.5 * (left + right), (right - left) / self.wheel_base
 
-    def place(self, arena: Arena, pose: Pose, rng: np.random.Generator | None = None) -> Drive:
+    def place(
+        self, arena: Arena, configuration: tuple[float, ...], rng: np.random.Generator | None = None
+    ) -> Drive:
         """Put the body into an arena; its slip is drawn from the generator, and without slip nothing is.
 
         Raises
@@ -200,7 +222,7 @@ class Disc(Settings):
         ArenaError
             For a pose that is not finite or where the body touches something, and slip without a generator.
         """
-        if self.slip and rng is None:
-            raise ArenaError(f"the wheels slip by {self.slip:g}; give `rng`, a numpy.random.Generator")
-        check_starts(self, arena, np.array([pose], dtype=float))
-        return Drive(self, arena, pose, rng)
+        check_generator(self.slip, rng)
+        check_starts(self, arena, np.array([configuration], dtype=float))
+        x, y, heading = configuration
+        return Drive(self, arena, (x, y, heading), rng)

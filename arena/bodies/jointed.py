@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float, Int
 from pydantic import Field, model_validator
 
 from arena.angles import wrap_angle
-from arena.bodies.base import TOLERANCE, Axis, Configurations, Segments, Unit, wrapped
+from arena.bodies.base import TOLERANCE, Alone, Axis, Configurations, Segments, Unit, check_generator, wrapped
 from arena.bodies.linkage import Chain, are_clear, bend_all, turn_all
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
@@ -127,6 +127,19 @@ class Jointed(Settings):
         links = np.empty((*configurations.shape, 2, 2))
         bend_all(np.ascontiguousarray(configurations, float), self.chain, links)
         return links
+
+    def place(
+        self, arena: Arena, configuration: tuple[float, ...], rng: np.random.Generator | None = None
+    ) -> Alone:
+        """Put it into a room; its slip is drawn from the generator.
+
+        Raises
+        ------
+        ArenaError
+            Where it cannot start, and for slip without a generator.
+        """
+        check_generator(self.slip, rng)
+        return Alone(self, arena, configuration, rng)
 
     def at_large(self, arena: Arena, count: int) -> "Linkages":
         """Give the physics of this many of its kind."""

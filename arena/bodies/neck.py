@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Int
 from pydantic import Field
 
 from arena.angles import wrap_angle
-from arena.bodies.base import POSE, Axis, Configurations, Segments, Unit
+from arena.bodies.base import POSE, Alone, Axis, Configurations, Segments, Unit, check_generator
 from arena.bodies.disc import Disc
 from arena.bodies.motors import Rollers
 from arena.errors import ArenaError
@@ -85,6 +85,19 @@ class Neck(Settings):
     def segments(self, configurations: Configurations) -> Segments:
         """Place the middle of the base."""
         return self.base.segments(configurations)
+
+    def place(
+        self, arena: Arena, configuration: tuple[float, ...], rng: np.random.Generator | None = None
+    ) -> Alone:
+        """Put it into a room; its slip is drawn from the generator.
+
+        Raises
+        ------
+        ArenaError
+            Where it cannot start, and for slip without a generator.
+        """
+        check_generator(self.base.slip, rng)
+        return Alone(self, arena, configuration, rng)
 
     def at_large(self, arena: Arena, count: int) -> "Necks":
         """Give the physics of this many of its kind."""

@@ -1,5 +1,6 @@
 """The overhead camera: it hangs still over the room and sees the body move in it."""
 
+import math
 from functools import lru_cache
 from typing import Annotated
 
@@ -93,7 +94,8 @@ class Overhead(Settings):
         x, y = self.center
         corner = x + 0.5 * (1 - self.width) * pixel, y + 0.5 * (self.height - 1) * pixel
         segments, poses = body.segments(configurations), body.camera_poses(configurations)
-        ahead = 0.5 * body.radius * np.column_stack([np.cos(poses[:, 2]), np.sin(poses[:, 2])])
+        # One by one: numpy's own cosine has another last digit on another processor.
+        ahead = 0.5 * body.radius * np.array([(math.cos(h), math.sin(h)) for h in poses[:, 2].tolist()])
         dots = np.repeat((poses[:, :2] + ahead)[:, None], 2, axis=1)
         count = segments.shape[1]
         strips = np.stack([*(_strip(self.links[k % len(self.links)], pixel) for k in range(count)), _DOT])

@@ -1,19 +1,22 @@
 """Motor babbling: smooth random commands, whatever comes of them, from which a motor model is learnt."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Generator
 from typing import Annotated, ClassVar
 
 import numpy as np
 from jaxtyping import Float
 from pydantic import Field
 
-from arena.bodies.base import AtLarge, Body, check_starts, wrapped
+from arena.bodies.base import Body, Placed, wrapped
 from arena.bodies.disc import Disc
 from arena.motions.base import Walk
 from arena.motions.policy import Policy, Sensed
 from arena.rooms.arena import Arena
 from arena.settings import Positive, Settings
+
+_Wishes = Generator[tuple[np.ndarray, float], bool, None]
+"""Gives commands and how long each holds (s), and is told whether something stopped the body."""
 
 
 class Babble(Settings):
@@ -89,30 +92,26 @@ class Babble(Settings):
         ArenaError
             When the body does not fit, or the start is not free.
         """
-        start = body.sample_free(arena, 1, rng) if self.start is None else np.array([self.start], float)
-        check_starts(body, arena, start)
-        one, bodies, count = np.zeros(1, int), body.at_large(arena, 1), views or self.default_views
-        bodies.begin(one, start)
+        start = self.start or tuple(body.sample_free(arena, 1, rng)[0].tolist())
+        placed, count = body.place(arena, start, rng), views or self.default_views
         there, commands = np.empty((count, len(body.axes))), np.empty((count, len(body.motors)))
         times = self.dt * np.arange(count + 1)
-        wishes = self._every_dt(rng) if isinstance(body, Disc) else self._by_motion(arena, body, bodies, rng)
-        for view, (command, dt) in zip(range(count), wishes, strict=False):
-            there[view], commands[view] = bodies.configurations[0], command
-            bodies.step(one, body.velocities(commands[view : view + 1]), dt, [rng])
+        wishes = self._every_dt(rng) if isinstance(body, Disc) else self._by_motion(arena, body, placed, rng)
+        command, dt = next(wishes)
+        for view in range(count):
+            there[view], commands[view] = placed.configuration, command
+            touched = placed.go(body.velocities(command).tolist(), dt)
             if not isinstance(body, Disc):
                 times[view + 1] = times[view] + dt
+            command, dt = wishes.send(touched)
         return Walk(times[:-1], there, commands=commands)
 
-    def _every_dt(self, rng: np.random.Generator) -> Iterator[tuple[np.ndarray, float]]:
-        """Give the commands of a disc, and how long each holds, s."""
+    def _every_dt(self, rng: np.random.Generator) -> _Wishes:
         policy = self.policy(rng, 1)
         while True:
             yield np.asarray(policy({}))[0], self.dt
 
-    def _by_motion(
-        self, arena: Arena, body: Body, bodies: AtLarge, rng: np.random.Generator
-    ) -> Iterator[tuple[np.ndarray, float]]:
-        """Give the commands of any other body, and how long each holds, s."""
+    def _by_motion(self, arena: Arena, body: Body, placed: Placed, rng: np.random.Generator) -> _Wishes:
         every = np.array([self.view_every_m if unit == "m" else self.view_every_rad for unit in body.motors])
         strength, most = self._strength(body), body.velocities(np.ones(len(every)))
         swings = len(body.axes) == len(body.motors)
@@ -121,19 +120,18 @@ class Babble(Settings):
             for _ in range(self.swing_every):
                 command = np.clip(strength * wish, -1, 1)
                 dt = min(1 / _length(body.velocities(command) / every), self.correlation_time)
-                yield command, dt
+                touched = yield command, dt
                 memory, kick = self._memory(dt)
-                wish *= -memory if bodies.touched[0] else memory
+                wish *= -memory if touched else memory
                 wish += kick * rng.standard_normal(len(wish))
             goal, touched = body.sample_free(arena, 1, rng)[0], not swings
             while not touched:
-                way = wrapped(body, goal - bodies.configurations[0])
+                way = wrapped(body, goal - placed.configuration)
                 left, fastest = _length(way / every), np.abs(way / most).max()
                 if left < 1e-9:
                     break
                 # a slip may miss the goal: from within a view it is there
-                yield way / most / fastest, fastest / max(left, 1.0)
-                touched = left <= 1.0 or bool(bodies.touched[0])
+                touched = (yield way / most / fastest, fastest / max(left, 1.0)) or left <= 1.0
 
     def _strength(self, body: Body) -> Float[np.ndarray, " motors"]:
         return np.array([self.speed if unit == "m" else self.turn for unit in body.motors])

@@ -19,7 +19,9 @@ class Policy(Protocol):
     is shown what that one sensed last, and what it says of it is not heard.
     """
 
-    def __call__(self, sensed: Sensed) -> Float[np.ndarray, " motors"] | Float[np.ndarray, "explorers motors"] | None:
+    def __call__(
+        self, sensed: Sensed
+    ) -> Float[np.ndarray, " motors"] | Float[np.ndarray, "explorers motors"] | None:
         """Give the next command.
 
         Parameters

@@ -92,6 +92,7 @@ def test_learn_refines_or_says_why_not(run, folder: Path, tmp_path: Path) -> Non
         (["track"], 60),
         (["chemotaxis", "--odorant", 2], 60),
         (["replay", "--path", "rat.csv", "--fit"], None),
+        (["babble", "--body", "arm", "--set", "body.limits=one", "--set", "motion.swing_every=9"], 60),
     ],
 )
 def test_every_motion_explores(
@@ -199,6 +200,11 @@ def test_a_room_without_free_space_is_refused(run, tmp_path: Path) -> None:
         (["explore", "furnished", "--motion", "replay", "--path", "nowhere.csv"], "nowhere.csv"),
         (["explore", "furnished", "--motion", "track", "--path", "rat.csv"], "path"),
         (["explore", "furnished", "--odorant", 1], "odorant"),
+        (["explore", "furnished", "--set", "bdy.limits=one"], "did you mean 'body'"),
+        (["explore", "furnished", "--set", "body.limits=one"], "body.limits"),
+        (["explore", "furnished", "--body", "arm"], "Brownian steers a disc"),
+        (["experiment", "rotation", "--set", "bdy=arm"], "did you mean 'body'"),
+        (["experiment", "rotation", "--set", "nose.noise=0.2"], "does not take another nose"),
         (["experiment", "levitation"], "choose one of acuity"),
         (["experiment", "rotation", "--views", 3], "views is 3"),
         (["experiment", "distinguishability", "--arena", "furnished"], "rooms of its own"),

@@ -1,9 +1,11 @@
 import numpy as np
 import pytest
 
+from arena.bodies.arm import Arm
 from arena.bodies.base import Body, check_starts, joints_of, wrapped
 from arena.bodies.catalogue import bodies
 from arena.bodies.disc import Disc
+from arena.bodies.neck import Neck
 from arena.errors import ArenaError
 from arena.rooms.arena import Arena
 
@@ -51,6 +53,29 @@ def test_bodies_at_large_go_as_alone(name: str) -> None:
         return at_large.configurations
 
     np.testing.assert_array_equal(gone(slice(None))[3:4], gone(slice(3, 4)))
+
+
+@pytest.mark.parametrize("name", sorted(bodies()))
+def test_one_alone_goes_as_one_of_many(name: str) -> None:
+    body = bodies()[name]()
+    (start,) = body.sample_free(ROOM, 1, RNG(0))
+    placed, at_large, one = body.place(ROOM, tuple(start)), body.at_large(ROOM, 1), np.zeros(1, int)
+    at_large.begin(one, start[None])
+    for command in RNG(1).uniform(-1, 1, (20, len(body.motors))):
+        touched = placed.go(body.velocities(command).tolist(), 0.2)
+        at_large.step(one, body.velocities(command[None]), 0.2, [])
+        np.testing.assert_array_equal(placed.configuration, at_large.configurations[0])
+        assert touched == at_large.touched[0]
+    with pytest.raises(ArenaError, match="finite"):
+        placed.go([np.nan] * len(body.motors), 0.2)
+    with pytest.raises(ArenaError, match="dt > 0"):
+        placed.go([0.1] * len(body.motors), 0.0)
+
+
+@pytest.mark.parametrize("body", [Disc(slip=0.1), Arm(slip=0.1), Neck(base=Disc(slip=0.1))])
+def test_who_slips_needs_a_generator(body: Body) -> None:
+    with pytest.raises(ArenaError, match=r"slip by 0\.1; give `rng`"):
+        body.place(ROOM, tuple(body.sample_free(ROOM, 1, RNG(0))[0]))
 
 
 def test_circles_alone_are_wrapped_and_a_disc_has_no_joints() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from arena.errors import ArenaError
-from arena.motions.paths import read_path
+from arena.motions.paths import read_joints, read_path
 
 GOOD = "t,x,y\n0.0,1,2\n0.5,1.5,2\n1.0,2,2.5\n"
 
@@ -127,3 +127,19 @@ def test_files_that_are_not_there_or_of_another_kind(tmp_path: Path) -> None:
     (tmp_path / "folder.csv").mkdir()
     with pytest.raises(ArenaError, match="directory"):
         read_path(tmp_path / "folder.csv")
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        ("0,1,2\n1,,3\n", "row 3 has joint_1 = nan"),
+        ("0,1,2\n0,1,3\n", "do not increase at row 3"),
+        ("0,1\n", "row 2 has 2 cells, not 3"),
+    ],
+)
+def test_joints_are_whole_and_in_order(tmp_path: Path, rows: str, said: str) -> None:
+    head = "t,joint_1,joint_2\n"
+    times, joints = read_joints(write(tmp_path, head + "0,1,2\n1,-1,3\n"), ["joint_1", "joint_2"])
+    assert (times.tolist(), joints.tolist()) == ([0, 1], [[1, 2], [-1, 3]])
+    with pytest.raises(ArenaError, match=said):
+        read_joints(write(tmp_path, head + rows), ["joint_1", "joint_2"])
