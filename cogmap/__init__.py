@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from cogmap import cells, evaluation, features, graph, navigation, plots, shape, testing
     from cogmap.control import MotorModel, Reacher
+    from cogmap.coordinates import GeneralisedCoordinates
     from cogmap.errors import CogmapError, UnlikeArithmeticWarning, UntrustedMapWarning
     from cogmap.evaluation.scoring import score
     from cogmap.features import BagOfWords
@@ -24,6 +25,7 @@ __all__ = [
     "CogmapError",
     "CognitiveMap",
     "EvenMemory",
+    "GeneralisedCoordinates",
     "Imagination",
     "LandmarkIsomap",
     "Localiser",
@@ -48,6 +50,7 @@ __all__ = [
 
 _HOMES = {
     "control": ("MotorModel", "Reacher"),
+    "coordinates": ("GeneralisedCoordinates",),
     "errors": ("CogmapError", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
     "evaluation.scoring": ("score",),
     "features": ("BagOfWords",),

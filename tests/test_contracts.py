@@ -15,9 +15,11 @@ NEVER = {
         "cogmap.shape",
         "cogmap.navigation",
         "cogmap.imagination",
+        "cogmap.coordinates",
     ): ("cogmap.evaluation", "cogmap.experiments"),
+    ("cogmap.coordinates",): ("cogmap.navigation", "cogmap.imagination", "cogmap.control"),
     ("cogmap.navigation", "cogmap.imagination"): ("cogmap.control",),
-    ("cogmap.graph", "cogmap.shape", "cogmap.map"): ("arena",),
+    ("cogmap.graph", "cogmap.shape", "cogmap.map", "cogmap.coordinates"): ("arena",),
     ("neurons",): ("arena", "cogmap"),
     ("arena",): ("neurons", "cogmap"),
 }

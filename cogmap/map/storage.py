@@ -12,8 +12,8 @@ from torch import Tensor
 from cogmap.atomic import atomic_write
 from cogmap.errors import CogmapError
 
-Kind = Literal["map", "memory", "motor"]
-VERSIONS: dict[Kind, int] = {"map": 4, "memory": 1, "motor": 1}
+Kind = Literal["map", "memory", "motor", "coordinates"]
+VERSIONS: dict[Kind, int] = {"map": 4, "memory": 1, "motor": 1, "coordinates": 1}
 WEIGHTS = "weights.safetensors"
 
 

@@ -12,6 +12,8 @@ from cogmap.plots.acting.dynamics import plot_foretold, plot_stops
 from cogmap.plots.acting.journeys import plot_journeys
 from cogmap.plots.acting.looking_round import plot_looking_round
 from cogmap.plots.acting.reached import plot_reached
+from cogmap.plots.bodies.coordinates import plot_coordinates
+from cogmap.plots.bodies.look_alikes import plot_look_alikes
 from cogmap.plots.cells.afferents import plot_afferents
 from cogmap.plots.cells.cell_types import plot_cell_types
 from cogmap.plots.cells.cue_control import plot_cue_control
@@ -50,6 +52,7 @@ __all__ = [
     "plot_cell_types",
     "plot_compass",
     "plot_confusion",
+    "plot_coordinates",
     "plot_courses",
     "plot_cue_control",
     "plot_dream_errors",
@@ -64,6 +67,7 @@ __all__ = [
     "plot_journeys",
     "plot_likeness",
     "plot_localisation",
+    "plot_look_alikes",
     "plot_looking_round",
     "plot_metric_map",
     "plot_neighbours",

@@ -1,4 +1,4 @@
-"""The circular coordinate: the angle along the loop of a cloud."""
+"""Circular coordinates: the angles along the loops of a cloud."""
 
 from typing import NamedTuple
 
@@ -28,23 +28,60 @@ class Loop(NamedTuple):
     """When the loop closes and when it is filled, in lengths of the graph."""
 
 
-def circular_coordinate(graph: sp.csr_array, *, landmarks: int = 150, seed: int = 0) -> Loop:
-    r"""Find the angle along the most persistent loop of a neighbour graph's largest piece.
+class Loops(NamedTuple):
+    """Several loops of a cloud, and where on each of them every point lies."""
 
-    Landmarks far from each other in the graph have an integer cocycle, the class of the longest bar of
+    phases: Float[np.ndarray, "points loops"]
+    """rad, up to whole turns; NaN outside the largest connected piece. The loop that stands out most comes
+    first."""
+    births: Float[np.ndarray, "loops"]
+    deaths: Float[np.ndarray, "loops"]
+    """When each closes and when it is filled, in lengths of the graph."""
+
+
+def circular_coordinate(graph: sp.csr_array, *, landmarks: int = 150, seed: int = 0) -> Loop:
+    """Find the angle along the most persistent loop of a neighbour graph's largest piece.
+
+    It is that of `circular_coordinates`, with phases replaced by their ranks, so that points lie evenly on
+    the circle: an animal that looks in all directions equally often has its heading so, up to a turn and a
+    mirror.
+
+    Parameters
+    ----------
+    graph, landmarks, seed
+        As for `circular_coordinates`.
+
+    Raises
+    ------
+    CogmapError
+        For something else than a neighbour graph, and when there is no loop.
+    """
+    phases, births, deaths = circular_coordinates(graph, 1, landmarks=landmarks, seed=seed)
+    phase = phases[:, 0]
+    points = np.flatnonzero(np.isfinite(phase))
+    rank = np.argsort(np.argsort(np.mod(phase[points], 2 * np.pi), kind="stable"), kind="stable")
+    phase[points] = 2 * np.pi * (rank + 0.5) / len(points) - np.pi
+    return Loop(phase, float(births[0]), float(deaths[0]))
+
+
+def circular_coordinates(graph: sp.csr_array, loops: int, *, landmarks: int = 150, seed: int = 0) -> Loops:
+    r"""Find the angles along the most persistent loops of a neighbour graph's largest piece.
+
+    Landmarks far from each other in the graph have an integer cocycle for each of the longest bars of
     persistent cohomology, which gives every point a first phase. Of all circle-valued functions in its class
     the harmonic one changes least over the edges of the graph,
 
     .. math:: \min_f \sum_{ij} (f_j - f_i - 2 \pi n_{ij})^2,
 
-    where n counts the edges that cross the cut. At last phases are replaced by their ranks, so that points
-    lie evenly on the circle: an animal that looks in all directions equally often has its heading so, up to a
-    turn and a mirror.
+    where n counts the edges that cross the cut. Which loops the phases wind around is told only up to an
+    integer change of basis (`cogmap.shape.lattice`).
 
     Parameters
     ----------
     graph
         Symmetric lengths, as from `neighbour_graph`.
+    loops
+        How many angles; as many as `betti` counts loops.
     landmarks
         On which cohomology is computed.
     seed
@@ -53,7 +90,7 @@ def circular_coordinate(graph: sp.csr_array, *, landmarks: int = 150, seed: int 
     Raises
     ------
     CogmapError
-        For something else than a neighbour graph, and when there is no loop.
+        For something else than a neighbour graph, and when there are fewer loops.
 
     References
     ----------
@@ -67,28 +104,27 @@ def circular_coordinate(graph: sp.csr_array, *, landmarks: int = 150, seed: int 
     taken = farthest_points(paths, landmarks, start).indices
     lengths = paths.lengths(taken)
     distances = lengths[:, taken]
-    birth, death, cocycle = _most_persistent(distances)
+    bars, cocycles = _most_persistent(distances, loops)
+    everywhere = np.full((graph.shape[0], loops), np.nan)
     with one_thread():
-        at_landmarks = _smooth_cocycle(distances, (birth + death) / 2, cocycle)
-        phase = _harmonic(piece, _spread_out(lengths, at_landmarks))
-    rank = np.argsort(np.argsort(np.mod(phase, 2 * np.pi), kind="stable"), kind="stable")
-    everywhere = np.full(graph.shape[0], np.nan)
-    everywhere[points] = 2 * np.pi * (rank + 0.5) / len(points) - np.pi
-    return Loop(everywhere, birth, death)
+        for loop, (cocycle, scale) in enumerate(zip(cocycles, bars.mean(axis=1), strict=True)):
+            at_landmarks = _smooth_cocycle(distances, float(scale), cocycle)
+            everywhere[points, loop] = _harmonic(piece, _spread_out(lengths, at_landmarks))
+    return Loops(everywhere, *bars.T)
 
 
 def _most_persistent(
-    distances: Float[np.ndarray, "landmarks landmarks"],
-) -> tuple[float, float, Int[np.ndarray, "edges 3"]]:
-    """Find the bar of H1 with the largest ratio and its cocycle: (landmark, landmark, residue)."""
+    distances: Float[np.ndarray, "landmarks landmarks"], loops: int
+) -> tuple[Float[np.ndarray, "loops 2"], list[Int[np.ndarray, "edges 3"]]]:
+    """Find the bars of H1 with the largest ratios and their cocycles: (landmark, landmark, residue)."""
     symmetric = np.maximum(distances, distances.T)
     found = ripser(symmetric, distance_matrix=True, maxdim=1, coeff=PRIME, do_cocycles=True)
-    bars = found["dgms"][1]
-    if not len(bars):
-        raise CogmapError("the graph has no loop to take an angle along; check with `betti`")
-    longest = int(np.argmax(ratios(bars)))
-    birth, death = bars[longest].tolist()
-    return birth, death, found["cocycles"][1][longest]
+    bars = found["dgms"][1].astype(np.float64)
+    if len(bars) < loops:
+        some = f"only {len(bars)} loops" if len(bars) else "no loop"
+        raise CogmapError(f"the graph has {some} to take {loops} angles along; check with `betti`")
+    longest = np.argsort(-ratios(bars), kind="stable")[:loops]
+    return bars[longest], [found["cocycles"][1][loop] for loop in longest]
 
 
 def _smooth_cocycle(

@@ -1,12 +1,75 @@
 """Intrinsic dimension: how many degrees of freedom a cloud has."""
 
+from typing import NamedTuple
+
 import numpy as np
 from jaxtyping import Float
 from scipy.spatial import KDTree
 
 from cogmap.errors import CogmapError
+from cogmap.graph.knn import nearest_points
 from cogmap.graph.points import checked_cloud
 from cogmap.inputs import checked_count
+from cogmap.threads import one_thread
+
+FLOOR = 1e-3
+"""Share of a neighbourhood's variance below which no direction counts: curvature and noise, however they
+compare."""
+
+
+class LocalDimension(NamedTuple):
+    """How many directions most neighbourhoods of a cloud spread in."""
+
+    dimension: int
+    vote: float
+    """Share of the points whose neighbourhood says so."""
+    spectrum: Float[np.ndarray, "components"]
+    """Shares of variance of a neighbourhood along its principal axes, medians over the points."""
+
+
+def local_dimension(
+    X: Float[np.ndarray, "points features"], *, neighbours: int = 15, most: int = 8
+) -> LocalDimension:
+    """Find the dimension of the manifold that points lie on, by principal components of neighbourhoods.
+
+    The variances λ₁ ≥ λ₂ ≥ … of a point and its nearest others fall most, by the ratio λᵢ / λᵢ₊₁, where the
+    directions along the manifold end and those of curvature and noise begin. The dimension is what most
+    points say; unlike the estimate of `intrinsic_dimension` it is a whole number, with a vote.
+
+    Parameters
+    ----------
+    X
+        Points.
+    neighbours
+        Other points in a neighbourhood: a few times as many as there are dimensions, and few enough to lie
+        flat.
+    most
+        The largest dimension that is looked for.
+
+    Raises
+    ------
+    CogmapError
+        For points that are not finite, and for too few of them.
+
+    References
+    ----------
+    Fukunaga & Olsen (1971), An algorithm for finding intrinsic dimensionality of data. IEEE Trans. Comput.
+    """
+    points = np.asarray(checked_cloud(X))
+    most = min(
+        checked_count("most", most), checked_count("neighbours", neighbours, 2) - 1, points.shape[1] - 1
+    )
+    near = nearest_points(points, neighbours).indices
+    shares = np.empty((len(points), most + 1))
+    with one_thread():
+        for block in np.array_split(np.arange(len(points)), -(-len(points) // 512)):
+            around = points[np.column_stack([block, near[block]])].astype(np.float64)
+            around -= around.mean(axis=1, keepdims=True)
+            variances = np.square(np.linalg.svd(around, compute_uv=False))
+            shares[block] = (variances / variances.sum(axis=1, keepdims=True))[:, : most + 1]
+    counted = np.maximum(shares, FLOOR)
+    votes = np.bincount((counted[:, :-1] / counted[:, 1:]).argmax(axis=1), minlength=most) / len(points)
+    return LocalDimension(int(votes.argmax()) + 1, float(votes.max()), np.median(shares, axis=0))
 
 
 def intrinsic_dimension(X: Float[np.ndarray, "points features"], *, neighbours: int = 100) -> float:

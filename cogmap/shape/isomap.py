@@ -55,6 +55,8 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         Coordinates; those beyond the dimensions of a piece are 0.
     neighbours
         Nearest points that each point is joined to.
+    one_sided
+        How many of these even when they do not count it among theirs (`neighbour_graph`); all when None.
     landmarks
         Drawn from each piece, or all of its points where these are fewer.
     averaging
@@ -92,6 +94,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         components: int = 4,
         *,
         neighbours: int = 15,
+        one_sided: int | None = None,
         landmarks: int = 400,
         averaging: bool = False,
         metric: Metric = "euclidean",
@@ -99,6 +102,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
     ) -> None:
         self.components = components
         self.neighbours = neighbours
+        self.one_sided = one_sided
         self.landmarks = landmarks
         self.averaging = averaging
         self.metric = metric
@@ -110,7 +114,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         checked_count("components", self.components)
         checked_count("landmarks", self.landmarks)
         X = self._points = self._checked(X, reset=True)
-        self.graph_ = neighbour_graph(X, self.neighbours, metric=self.metric)
+        self.graph_ = neighbour_graph(X, self.neighbours, metric=self.metric, one_sided=self.one_sided)
         self.pieces_ = components(self.graph_)
         self._position = np.empty(X.shape[0], dtype=int)
         self._single = np.empty((X.shape[0], self.components))

@@ -78,9 +78,12 @@ def geodesic(X: Float[np.ndarray, "points features"], neighbours: int) -> Paths:
     return space
 
 
-def geodesics(X: Float[np.ndarray, "points features"], counts: Sequence[int]) -> list[Paths]:
-    """Shortest paths in the graphs of several numbers of neighbours, as `geodesic`."""
-    return [along(*found) for found in zip(neighbour_graphs(X, counts), counts, strict=True)]
+def geodesics(
+    X: Float[np.ndarray, "points features"], counts: Sequence[int], one_sided: int | None = None
+) -> list[Paths]:
+    """Shortest paths in the graphs of several numbers of neighbours, as `geodesic` (`neighbour_graph`)."""
+    graphs = neighbour_graphs(X, counts, one_sided=one_sided)
+    return [along(*found) for found in zip(graphs, counts, strict=True)]
 
 
 def along(graph: sp.csr_array, neighbours: int) -> Paths:

@@ -54,6 +54,7 @@ def test_each_says_what_it_does_and_what_it_is_about() -> None:
     found = listing()
     assert {entry["about"] for entry in found} == {
         "Experiments of the paper",
+        "Bodies whose mechanism nobody has described",
         "Controls of the cells",
         "What an explorer does with its map: imagine, expect and reach",
     }

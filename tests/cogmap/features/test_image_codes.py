@@ -50,3 +50,10 @@ def test_weights_in_codes_place_views_better_than_the_nearest() -> None:
 def test_what_is_no_view_is_refused() -> None:
     with pytest.raises(CogmapError, match="uint8 images"):
         image_codes(np.zeros((3, 60, 80)))
+
+
+def test_larger_codes() -> None:
+    views = np.random.default_rng(4).integers(0, 256, (2, 30, 40, 3), dtype=np.uint8)
+    np.testing.assert_array_equal(image_codes(views, width=20, height=15), image_codes(views))
+    fine = image_codes(views, width=40, height=10).reshape(2, 10, 40, 3)
+    np.testing.assert_allclose(fine.mean(axis=(1, 2)), views.mean(axis=(1, 2)), atol=2)

@@ -1,3 +1,5 @@
+import itertools
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -7,7 +9,7 @@ from hypothesis import strategies as st
 from cogmap.cells.decoding.decoders import fit_heading_frame, heading_errors
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import SMALLEST, neighbour_graph
-from cogmap.shape.circular import circular_coordinate
+from cogmap.shape.circular import circular_coordinate, circular_coordinates
 
 
 def resultant(phase: np.ndarray, angle: np.ndarray) -> float:
@@ -92,3 +94,23 @@ def test_no_loop_gets_one_sentence() -> None:
         circular_coordinate(neighbour_graph(path, 2))
     with pytest.raises(CogmapError, match="not symmetric"):
         circular_coordinate(sp.csr_array(np.triu(np.ones((20, 20)), 1)))
+
+
+def test_two_angles_of_a_torus() -> None:
+    truth = np.random.default_rng(8).uniform(-np.pi, np.pi, size=(2500, 2))
+    graph = neighbour_graph(np.hstack([np.cos(truth), np.sin(truth)]))
+    found = circular_coordinates(graph, 2, landmarks=200)
+    assert (found.deaths > 1.5 * found.births).all()
+    times = [np.array(m) for m in itertools.product(range(-2, 3), repeat=2)]
+    winding = [
+        max(times, key=lambda m: abs(np.exp(1j * (phase - truth @ m)).mean())) for phase in found.phases.T
+    ]
+    assert abs(round(np.linalg.det(winding))) == 1
+    for phase, m in zip(found.phases.T, winding, strict=True):
+        assert abs(np.exp(1j * (phase - truth @ m)).mean()) > 0.97
+
+
+def test_more_angles_than_loops() -> None:
+    X, _ = noisy_ring(60, np.random.default_rng(9))
+    with pytest.raises(CogmapError, match="only 1 loops to take 9 angles along"):
+        circular_coordinates(neighbour_graph(X[:, :2], 4), 9)

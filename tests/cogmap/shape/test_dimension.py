@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.spatial.distance import cdist
 
 from cogmap.errors import CogmapError
-from cogmap.shape.dimension import intrinsic_dimension
+from cogmap.shape.dimension import intrinsic_dimension, local_dimension
 
 
 def test_by_hand() -> None:
@@ -51,3 +51,32 @@ def test_scale_turn_and_repeats_change_nothing() -> None:
 def test_bad_input_gets_one_sentence(X: np.ndarray, neighbours: int, message: str) -> None:
     with pytest.raises(CogmapError, match=message):
         intrinsic_dimension(X, neighbours=neighbours)
+
+
+@given(st.integers(1, 3), st.integers(0, 100))
+@settings(deadline=None, max_examples=4)
+def test_directions_of_bent_tori(dimension: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    angle = rng.uniform(0, 2 * np.pi, size=(800 * dimension**2, dimension))
+    X = np.hstack([np.cos(angle), np.sin(angle), rng.normal(scale=1e-3, size=(len(angle), 3))])
+    found = local_dimension(X)
+    assert found.dimension == dimension
+    assert found.vote > 0.6
+    assert found.spectrum[0] == found.spectrum.max() < 1
+
+
+def test_spectrum_by_hand() -> None:
+    X = np.random.default_rng(3).normal(size=(30, 4))
+    near = np.argsort(cdist(X, X), axis=1)[:, :8]
+    spectra = np.array([np.sort(np.linalg.eigvalsh(np.cov(X[row].T)))[::-1] for row in near])
+    spectra /= spectra.sum(axis=1, keepdims=True)
+    votes = np.bincount((spectra[:, :-1] / spectra[:, 1:]).argmax(axis=1))
+    found = local_dimension(X, neighbours=7)
+    assert found.dimension == votes.argmax() + 1
+    assert found.vote == pytest.approx(votes.max() / 30)
+    np.testing.assert_allclose(found.spectrum, np.median(spectra, axis=0))
+
+
+def test_a_line_without_width_is_one() -> None:
+    line = np.linspace(0, 1, 50)[:, None] * [1.0, 2.0, 3.0]
+    assert local_dimension(line) == (1, 1.0, pytest.approx([1, 0, 0], abs=1e-8))

@@ -1,0 +1,1 @@
+"""Bodies whose mechanism nobody has described, one file each."""

@@ -1,0 +1,41 @@
+"""The seam of an image: whether its last column continues in its first, as that of a panorama does."""
+
+from typing import Any
+
+import numpy as np
+
+from cogmap.inputs import check_views
+
+LOOKED_AT = 1000
+"""Views by which it is told; spread evenly over those that are given."""
+CONTINUES = 0.5
+"""Share of the usual correlation of neighbouring columns from which on two columns are neighbours."""
+
+
+def wraps_around(views: Any) -> bool:
+    """Tell from views of a moving scene, or of one that moves, whether they look all around.
+
+    What changes from view to view changes alike in neighbouring columns. If the last and the first column
+    change alike, too, they are neighbours: correlations of deviations from the mean view tell, so that a
+    still background is no neighbour of its other side, whatever its colour.
+
+    Parameters
+    ----------
+    views
+        (views, height, width, 3) uint8, from different poses.
+
+    Raises
+    ------
+    CogmapError
+        For views that are not uint8 images.
+    """
+    check_views(views)
+    chosen = np.unique(np.linspace(0, views.shape[0] - 1, min(LOOKED_AT, views.shape[0])).astype(int))
+    deviation = np.stack([np.asarray(views[int(view)], np.float32) for view in chosen])
+    deviation -= deviation.mean(axis=0)
+    columns = deviation.transpose(2, 0, 1, 3).reshape(views.shape[2], -1)
+    # Grey levels squared and summed: one keeps what never changes from a division by zero.
+    power = np.sqrt(np.square(columns).sum(axis=1)) + 1
+    beside = np.roll(columns, -1, axis=0)
+    correlation = np.einsum("cv,cv->c", columns, beside) / (power * np.roll(power, -1))
+    return bool(correlation[-1] >= CONTINUES * np.median(correlation[:-1]) > 0)

@@ -1,0 +1,1 @@
+"""Figures of bodies whose mechanism nobody has described, one file each."""
