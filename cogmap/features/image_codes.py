@@ -17,7 +17,7 @@ WIDTH, HEIGHT = 20, 15
 def image_codes(
     views: Any, *, width: int = WIDTH, height: int = HEIGHT
 ) -> Float32[np.ndarray, "views features"]:
-    """Reduce each view to 20×15 pixels of three colours: means over twice that, blurred by one of its pixels.
+    """Reduce each view to a few pixels of three colours: means over twice as many, blurred by one of these.
 
     Noise of single pixels averages out, and a step of the camera that moves edges by a fraction of a pixel of
     the code changes it in proportion. Views are read block by block and may lie on disk.
@@ -27,8 +27,8 @@ def image_codes(
     views
         (views, height, width, 3) uint8.
     width, height
-        Pixels of a code. More tell small steps between views that are near anyhow; codes of views farther
-        apart are then all equally unlike.
+        Pixels of a code, 20×15 unless told. More tell small steps between views that are near anyhow; codes
+        of views farther apart are then all equally unlike.
 
     Raises
     ------

@@ -27,7 +27,7 @@ NORTH = 5
 RIDGE = 1e-3
 """Of the affine weights."""
 DRIFT = 100
-"""Times that what headings drift by is averaged over neighbours: over a metre in a room of some."""
+"""Times that the drift of headings is averaged over neighbours, some 10 cm around, so over a metre in all."""
 LOOK_ALIKE = 6.0
 """Usual distances to a neighbour beyond which a view that looks alike was taken elsewhere."""
 SHIFTS = 0.99
