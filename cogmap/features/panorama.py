@@ -18,6 +18,9 @@ from cogmap.graph.spots import spot_graph
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
 
+FIT = 5
+"""Nearest known views that tell how known another is, and its heading where nothing weighs them."""
+
 
 class Compared(NamedTuple):
     """What known views tell of others."""
@@ -25,7 +28,7 @@ class Compared(NamedTuple):
     headings: Float[np.ndarray, "views"]
     """rad."""
     misfit: Float[np.ndarray, "views"]
-    """Of the known one that fits best (`compass.misfit`)."""
+    """Of the known one that fits best (`compass.misfit`), among the nearest."""
 
 
 class PanoramaCode(TransformerMixin, BaseEstimator):
@@ -100,8 +103,7 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         check_is_fitted(self)
         test = strips(X)
         places = self.place(test)
-        # The five nearest known views tell the heading of another.
-        nearest = nearest_points(self.places_, min(5, len(self.places_)), queries=places).indices
+        nearest = nearest_points(self.places_, min(FIT, len(self.places_)), queries=places).indices
         return self._features(places, self.heading(test, nearest))
 
     def place(self, seen: Strips) -> Float[np.ndarray, "views components"]:
@@ -114,14 +116,25 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         """Give θ of other panoramas, rad, as the mean of what these known views near each tell of it."""
         return self.compare(seen, nearest).headings
 
-    def compare(self, seen: Strips, nearest: Int[np.ndarray, "views near"]) -> Compared:
-        """Turn known views to other panoramas, and see how well they fit."""
+    def compare(
+        self,
+        seen: Strips,
+        nearest: Int[np.ndarray, "views near"],
+        weights: Float[np.ndarray, "views near"] | None = None,
+    ) -> Compared:
+        """Turn known views to other panoramas, and see how well the nearest of them fit.
+
+        A turn is the more wrong the farther the known view is, and wrong the other way on the other side:
+        affine weights (`affine_weights`) cancel that. All count alike when None.
+        """
         pairs = np.column_stack([np.repeat(np.arange(len(nearest)), nearest.shape[1]), nearest.ravel()])
         with one_thread():
             turned = turns(seen.grey, pairs, self._grey)
-            unlike = misfit(seen.grey, pairs, turned, self._grey).reshape(nearest.shape)
             told = np.exp(1j * (self.headings_[pairs[:, 1]] + turned)).reshape(nearest.shape)
-        return Compared(np.asarray(np.angle(told.sum(axis=1))), unlike.min(axis=1))
+            fits = np.arange(len(pairs)).reshape(nearest.shape)[:, :FIT].ravel()
+            unlike = misfit(seen.grey, pairs[fits], turned[fits], self._grey).reshape(len(nearest), -1)
+        heading = np.angle((told if weights is None else weights * told).sum(axis=1))
+        return Compared(np.asarray(heading), unlike.min(axis=1))
 
     def compare_known(self, pairs: Int[np.ndarray, "pairs 2"]) -> Compared:
         """Give by how much the first of near known views is turned from the second, and their misfit."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from typing import Any, Literal, Protocol, get_args, runtime_checkable
@@ -43,9 +43,6 @@ Method = Literal["decoder", Turned]
 """
 STRAIGHT = 0.2
 """Turn between views (rad) up to which a body counts as going straight on."""
-
-CALIBRATED = 500
-"""Remembered views that tell what is usual."""
 
 
 @runtime_checkable
@@ -243,7 +240,7 @@ class Imagination:
             raise CogmapError(
                 f"{len(places.phase)} views do not tell what is usual; remember at least {4 * VISIT}"
             )
-        chosen = np.unique(np.linspace(0, len(places.phase) - 1, CALIBRATED).astype(int))
+        chosen = places.sample
         views = np.stack([places.views[view] for view in chosen])
         poses = np.column_stack([places.position[chosen], places.phase[chosen]])
         there = self._aligned(views, poses, self._seen(views, poses, chosen), chosen)[1]
@@ -308,18 +305,23 @@ class Imagination:
         self, sources: Sources, phase: Float[np.ndarray, "targets"], *, method: Turned = "warp"
     ) -> Iterator[Painted]:
         """Make views from their sources, one after the other, in threads."""
+        with one_thread():
+            yield from in_order(self._painter(sources, phase, method), range(len(phase)))
+
+    def _painter(
+        self, sources: Sources, phase: Float[np.ndarray, "targets"], method: Turned
+    ) -> Callable[[int], Painted]:
+        """Give what makes the view of a target."""
         places = self.places
         turn = self.sense * (phase[:, None] - places.phase[sources.indices])
         shifts = columns_turned(turn, places.views.shape[2])
-
         paint = warped if method == "warp" else blended
 
         def painted(target: int) -> Painted:
             views = np.stack([places.views[view] for view in sources.indices[target]])
             return paint(views, shifts[target], sources.affine[target], sources.near[target])
 
-        with one_thread():
-            yield from in_order(painted, range(len(phase)))
+        return painted
 
     def _poses(self, views: Any) -> Float[np.ndarray, "views 3"]:
         check_views(views, self.cmap.view_shape_)
@@ -351,7 +353,7 @@ class Imagination:
             return np.stack([coarse(each.view) for each in self.paint(sources, where[:, 2], method="blend")])
 
         seen = np.stack([coarse(view) for view in views])
-        reach = np.array([self.places.spacing, self.places.spacing, 0.01])
+        reach = np.array([self.places.spacing / 2, self.places.spacing / 2, 0.01])
         return aligned(seen, poses, there, fine=fine, quick=quick, reach=reach)
 
     def _seen(
@@ -359,13 +361,16 @@ class Imagination:
     ) -> Seen:
         """Imagine what views show at their poses, and compare."""
         sources = self.places.sources(poses[:, :2], self.sources, without=without)
-        distances = sources.distances[:, 0] / self.places.spacing
-        found = [
-            (coarse(painted.view), unusual(view, painted, distance))
-            for view, painted, distance in zip(
-                views, self.paint(sources, poses[:, 2]), distances.tolist(), strict=True
-            )
-        ]
+        nearest = self.places.sources(poses[:, :2], 1, without=without)
+        dreamt = self._painter(sources, poses[:, 2], "warp")
+        turned = self._painter(nearest, poses[:, 2], "turned")
+
+        def compared(view: int) -> tuple[Float32[np.ndarray, "pixels"], Float32[np.ndarray, "height width"]]:
+            painted = dreamt(view)
+            return coarse(painted.view), unusual(views[view], painted, turned(view).view)
+
+        with one_thread():
+            found = list(in_order(compared, range(len(poses))))
         return Seen(*map(np.stack, zip(*found, strict=True)))
 
     def _walked(

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float, Float32, Int
 from scipy.spatial import KDTree
 
+from cogmap.errors import CogmapError
 from cogmap.map.activity import Activity
 
 CANDIDATES = 40
@@ -21,6 +22,8 @@ RIDGE = 1e-2
 
 VISIT = 100
 """Views of a walk before and after one that may be of the same visit to its place."""
+SAMPLED = 500
+"""Places that tell what is usual."""
 
 
 class Sources(NamedTuple):
@@ -57,11 +60,26 @@ class RememberedPlaces:
         return KDTree(self.position)
 
     @cached_property
+    def sample(self) -> Int[np.ndarray, "sampled"]:
+        """Places that tell what is usual, evenly spread over the walk."""
+        return np.unique(np.linspace(0, len(self.phase) - 1, SAMPLED).astype(int))
+
+    @cached_property
     def spacing(self) -> float:
-        """Median distance from one place to the nearest other, in the unit of the map."""
-        # beside itself, and not from where the body turned on the spot
-        distances = self.tree.query(self.position, k=[2])[0]
-        return float(np.median(distances))
+        """Median distance from a place to the nearest of another visit, in the unit of the map.
+
+        Raises
+        ------
+        CogmapError
+            For a memory so small that it may all be of one visit.
+        """
+        distances = self.sources(self.position[self.sample], 1, without=self.sample).distances
+        usual = float(np.median(distances))
+        if not np.isfinite(usual):
+            raise CogmapError(
+                f"{len(self.phase)} views do not tell how close places are; remember at least {4 * VISIT}"
+            )
+        return usual
 
     def sources(
         self,

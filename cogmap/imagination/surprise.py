@@ -13,10 +13,8 @@ from cogmap.imagination.turning import Painted
 
 FLOOR = 4.0
 """Difference (grey levels) that is usual anywhere."""
-SLIP = 0.03
-"""By how many pixels an edge is off, for a target as far from memory as its spacing; as the square beyond."""
-DOUBT = 8.0
-"""By how much the variance of a dream is larger than that of its sources, which err alike."""
+DOUBT, CARRIED = 0.5, 0.1
+"""Shares of the variance: of what the sources differ by, and of what flow changed of the nearest."""
 PATCH = 11 / 360
 """How wide a patch is that is judged as a whole, in turns."""
 BEYOND = 0.5
@@ -102,22 +100,22 @@ class Plan:
 
 
 def unusual(
-    view: Num[np.ndarray, "height width 3"], painted: Painted, distance: float
+    view: Num[np.ndarray, "height width 3"],
+    painted: Painted,
+    nearest: Float32[np.ndarray, "height width 3"],
 ) -> Float32[np.ndarray, "height width"]:
     r"""Compare a view with what was imagined, pixel by pixel.
 
     .. math:: \sqrt{\overline{(v - D)^2} \big/ \overline{\sigma^2}},\quad
-        \sigma^2 = \sigma_0^2 + 8 s^2 + (\epsilon d^2\,|\nabla D|)^2,
+        \sigma^2 = \sigma_0^2 + \tfrac12 s^2 + \tfrac1{10} (D - A)^2,
 
-    means over a patch; s is the spread of the sources, and edges are the less certain the farther, d, the
-    nearest remembered place is, in units of the memory's spacing.
+    means over a patch; s is the spread of the sources, and A what the nearest of them shows, turned only.
+    Where flow changed little of it, it can hardly be wrong; beside a box it changed all.
     """
     imagined = np.clip(painted.view, 0, 255)
     error = _grey(np.square(imagined - view))
-    across = (np.roll(imagined, -1, axis=1) - np.roll(imagined, 1, axis=1)) / 2
-    down = np.gradient(imagined, axis=0)
-    edges = _grey(np.square(across) + np.square(down))
-    variance = FLOOR**2 + DOUBT * np.square(painted.spread) + (SLIP * distance**2) ** 2 * edges
+    carried = _grey(np.square(imagined - nearest))
+    variance = FLOOR**2 + DOUBT * np.square(painted.spread) + CARRIED * carried
     return np.asarray(np.sqrt(_patches(error) / _patches(variance)), np.float32)
 
 

@@ -22,10 +22,10 @@ NEIGHBOURS = 60
 """Whose places make up that of a view."""
 BESIDE = 10
 """Which neighbour tells what is usual."""
-NORTH = 5
-"""Of these, which tell the heading."""
 RIDGE = 1e-3
 """Of the affine weights."""
+NORTH, STIFF = 16, 1e-2
+"""Of the neighbours, which tell the heading, and the ridge of their weights."""
 DRIFT = 100
 """Times that the drift of headings is averaged over neighbours, some 10 cm around, so over a metre in all."""
 LOOK_ALIKE = 6.0
@@ -145,7 +145,8 @@ class RelaxedPlaces:
         weights = affine_weights(self._code.places_, indices, codes, RIDGE)
         position = np.einsum("vk,vkc->vc", weights, self.places_[indices])
         north = np.where(indices < 0, indices[:, :1], indices)[:, :NORTH]
-        heading, unlike = self._code.compare(seen, north)
+        level = affine_weights(self._code.places_, north, codes, STIFF)
+        heading, unlike = self._code.compare(seen, north, level)
         phase = wrap_angle(-heading if self.mirrored_ else heading)
         unusual = np.sqrt(unlike / self._usual.misfit)
         return Located(position, phase, np.maximum(near.distances[:, -1] / self._usual.apart, unusual))

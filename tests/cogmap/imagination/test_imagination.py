@@ -103,7 +103,7 @@ def test_a_moved_box_surprises_where_it_stood_or_stands(
     monkeypatch.setattr("cogmap.imagination.places.VISIT", 0)
     # a square metre was walked, and the box stood 1.7 m beside it
     monkeypatch.setattr("cogmap.imagination.surprise.BEYOND", 2.0)
-    monkeypatch.setattr("cogmap.imagination.imagination.CALIBRATED", 6)
+    monkeypatch.setattr("cogmap.imagination.places.SAMPLED", 6)
     boxes = [box.model_dump() for box in room.boxes]
     gone = room.model_copy(update={"boxes": boxes[:1] + boxes[2:]})
     views, poses = remembered
