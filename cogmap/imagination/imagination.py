@@ -15,7 +15,7 @@ from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
 from cogmap.imagination.alignment import Seen, aligned, coarse
 from cogmap.imagination.decoder import ChartDecoder
-from cogmap.imagination.places import VISIT, RememberedPlaces, Sources
+from cogmap.imagination.places import RememberedPlaces, Sources
 from cogmap.imagination.stroll import stroll
 from cogmap.imagination.surprise import Surprise, unusual
 from cogmap.imagination.turning import Painted, blended, columns_turned
@@ -236,10 +236,6 @@ class Imagination:
     def threshold(self) -> float:
         """Above what surprises where nothing has changed: 2.25 times what one view in 100 reaches."""
         places = self.places
-        if len(places.phase) < 4 * VISIT:
-            raise CogmapError(
-                f"{len(places.phase)} views do not tell what is usual; remember at least {4 * VISIT}"
-            )
         chosen = places.sample
         views = np.stack([places.views[view] for view in chosen])
         poses = np.column_stack([places.position[chosen], places.phase[chosen]])

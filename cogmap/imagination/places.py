@@ -61,25 +61,23 @@ class RememberedPlaces:
 
     @cached_property
     def sample(self) -> Int[np.ndarray, "sampled"]:
-        """Places that tell what is usual, evenly spread over the walk."""
-        return np.unique(np.linspace(0, len(self.phase) - 1, SAMPLED).astype(int))
-
-    @cached_property
-    def spacing(self) -> float:
-        """Median distance from a place to the nearest of another visit, in the unit of the map.
+        """Places that tell what is usual, evenly spread over the walk.
 
         Raises
         ------
         CogmapError
-            For a memory so small that it may all be of one visit.
+            For a memory so small that much of it is of one visit.
         """
-        distances = self.sources(self.position[self.sample], 1, without=self.sample).distances
-        usual = float(np.median(distances))
-        if not np.isfinite(usual):
+        if len(self.phase) < 4 * VISIT:
             raise CogmapError(
-                f"{len(self.phase)} views do not tell how close places are; remember at least {4 * VISIT}"
+                f"{len(self.phase)} views do not tell what is usual; remember at least {4 * VISIT}"
             )
-        return usual
+        return np.unique(np.linspace(0, len(self.phase) - 1, SAMPLED).astype(int))
+
+    @cached_property
+    def spacing(self) -> float:
+        """Median distance from a place to the nearest of another visit, in the unit of the map."""
+        return float(np.median(self.sources(self.position[self.sample], 1, without=self.sample).distances))
 
     def sources(
         self,

@@ -99,6 +99,23 @@ def test_known_views_tell_turns_and_whether_they_fit_and_are_stored() -> None:
         np.testing.assert_array_equal(mine, theirs)
 
 
+def test_affine_weights_tell_the_heading_where_all_that_is_known_lies_on_one_side() -> None:
+    """Beside a box the turns of views to the left are wrong, and those of views farther left more so."""
+    box = ROOM.boxes[0]
+    x = np.array(box.center)[0] + np.linspace(-0.3, 0.3, 30)
+    y = np.full(30, max(corner[1] for corner in box.outline) + 0.2)
+    poses = np.column_stack([x, y, np.zeros(30)])
+    code = PanoramaCode(10, neighbours=4).fit(CAMERA.render(ROOM, poses))
+    code.headings_ = poses[:, 2]
+    ones = slice(4, 26, 3)
+    near = np.arange(30)[ones][:, None] + np.array([1, 2, 3])
+    seen = strips(CAMERA.render(ROOM, poses[ones]))
+    # 2 y(1) − y(2) leads back to y(0)
+    told = code.compare(seen, near, np.tile([2.0, -1.0, 0.0], (len(near), 1))).headings
+    alike = code.compare(seen, near).headings
+    assert off(told).max() < 0.5 * off(alike).max()
+
+
 @pytest.mark.parametrize("count", [1, 3])
 def test_one_view_alone_is_no_map(count: int) -> None:
     view = CAMERA.render(ROOM, np.array([[0.0, 1.0, 0.3]]))

@@ -1,5 +1,7 @@
 import numpy as np
+import pytest
 
+from cogmap.errors import CogmapError
 from cogmap.imagination.places import VISIT, RememberedPlaces
 
 
@@ -39,3 +41,18 @@ def test_the_visit_of_an_imagined_view_is_left_out() -> None:
     asked = np.arange(0, 1000, 50)
     found = _places(position).sources(position[asked], 5, without=asked)
     assert (np.abs(found.indices - asked[:, None]) > VISIT).all()
+
+
+def test_turning_on_the_spot_brings_places_no_closer() -> None:
+    rng = np.random.default_rng(0)
+    visited = rng.uniform(size=(1000, 2))
+    turned = np.repeat(visited, 4, axis=0) + 1e-5 * rng.normal(size=(4000, 2))
+    once, again = _places(visited).spacing, _places(turned).spacing
+    assert 0.8 < again / once < 1.25
+    # 1 / (2 √density) from a random place to the nearest of many
+    assert 0.8 < once / (0.5 / np.sqrt(1000)) < 1.25
+
+
+def test_a_single_visit_tells_no_spacing() -> None:
+    with pytest.raises(CogmapError, match="90 views do not tell what is usual; remember at least 400"):
+        _ = _places(np.random.default_rng(0).uniform(size=(90, 2))).spacing
