@@ -7,6 +7,8 @@ from threadpoolctl import threadpool_limits
 from arena import Arena, Brownian, Camera, Recording, explore
 from arena.angles import wrap_angle
 from cogmap import CogmapError
+from cogmap.features.panorama import Compared, PanoramaCode
+from cogmap.features.strips import Strips
 from cogmap.map.relaxed_places import Located, RelaxedPlaces, _alike
 from cogmap.threads import one_thread
 
@@ -66,6 +68,25 @@ def test_places_and_headings_are_finer_than_those_recalled(
         before, after = errors(poses, *coarse), errors(poses, *fine)
         assert after[0] < place * before[0]
         assert after[1] < heading * before[1]
+
+
+def test_a_heading_is_told_by_neighbours_that_make_up_the_view(
+    relaxed, fresh: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = []
+
+    def compare(self: PanoramaCode, seen: Strips, near: np.ndarray, weights: np.ndarray) -> Compared:
+        asked.append((self.place(seen), self.places_[near], weights))
+        return plain(self, seen, near, weights)
+
+    plain = PanoramaCode.compare
+    monkeypatch.setattr(PanoramaCode, "compare", compare)
+    located(relaxed, fresh)
+    ((codes, near, weights),) = asked
+    np.testing.assert_allclose(weights.sum(axis=1), 1)
+    made = np.einsum("vk,vkc->vc", weights, near)
+    off, mean_off = (np.linalg.norm(each - codes, axis=1) for each in (made, near.mean(axis=1)))
+    assert np.median(off / mean_off) < 0.8
 
 
 def test_a_walk_straightens_what_neighbours_cannot(relaxed, walk: Recording) -> None:
