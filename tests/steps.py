@@ -1,4 +1,4 @@
-"""Types at each step of a walk are checked where walks are tested: elsewhere the checks take longer than the walks."""
+"""Types at each step of a walk are checked where walks are tested: elsewhere it takes longer than walking."""
 
 from __future__ import annotations
 
