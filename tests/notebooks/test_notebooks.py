@@ -23,7 +23,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "7_the_homology_of_emergent_maps": {"VIEWS": 3000, "CHARTS": 600, "LANDMARKS": (100, 50)},
     "8_your_own_arena": {"MINUTES": 5, "CHARTS": 250},
     "9_imagine_expect_reach": {"VIEWS": 3000, "CHARTS": 600, "WIDTH": 90},
-    "10_any_body": {"VIEWS": 1600},
+    "10_any_body": {"VIEWS": 600},
 }
 
 
