@@ -37,7 +37,7 @@ ConstrainedLayoutEngine.execute = lambda *_: None
 vocabulary.EXAMPLES = 2000
 view_code.STEPS = 60
 """
-"""Before the first cell: words are learnt from few descriptors, components from few batches, and nobody looks how figures are laid out."""
+"""Before the first cell: words are learnt from few descriptors, components from few batches; no layout."""
 GUARDS = """
 import gc
 gc.collect()
