@@ -1,6 +1,7 @@
 """Generalised coordinates: degrees of freedom, loops and coordinates of any body, from images alone."""
 
 from cogmap.coordinates.generalised_coordinates import GeneralisedCoordinates
+from cogmap.coordinates.split import split_torus
 from cogmap.coordinates.view_code import ViewCode
 
-__all__ = ["GeneralisedCoordinates", "ViewCode"]
+__all__ = ["GeneralisedCoordinates", "ViewCode", "split_torus"]

@@ -35,9 +35,6 @@ def calculate(*before: str, environment: dict[str, str] | None = None) -> str:
 def test_arithmetic_is_a_name_of_how_this_process_calculates() -> None:
     assert arithmetic() == arithmetic.__wrapped__()
     assert calculate() == f"{arithmetic()} {PINNED.items() <= os.environ.items()}"
-    least = calculate(environment=os.environ | {"MKL_CBWR": "COMPATIBLE", "ATEN_CPU_CAPABILITY": "default"})
-    assert least.split()[0] != arithmetic()
-    assert least.endswith("False")
 
 
 @pytest.fixture(scope="module")
@@ -45,14 +42,16 @@ def portable() -> str:
     return calculate(*COGMAP, "portable")
 
 
-@pytest.mark.parametrize("name", PROCESSORS)
+@pytest.mark.parametrize("name", [name for name in PROCESSORS if name != "avx2"])  # which is met below
 def test_portable_arithmetic_is_the_same_on_every_processor(name: str, portable: str, tmp_path: Path) -> None:
     environment = processor(name, tmp_path)
     if environment is None:
         pytest.skip(f"this processor has no instructions of {name}")
     assert portable.endswith("True")
     assert calculate(*COGMAP, "portable", environment=environment) == portable
-    assert calculate(environment=environment).split()[0] != portable.split(maxsplit=1)[0]
+    plain = calculate(environment=environment)
+    assert plain.split()[0] != portable.split(maxsplit=1)[0]
+    assert plain.endswith("False")
 
 
 def test_all_that_is_begun_on_one_processor_can_be_ended_on_another(tmp_path: Path) -> None:
@@ -74,6 +73,7 @@ def test_all_that_is_begun_on_one_processor_can_be_ended_on_another(tmp_path: Pa
         assert ended.returncode == 0, ended.stderr
         found.append(json.loads(ended.stdout))
     assert found[0] == found[1]
+    assert calculate(environment=environment).split()[0] != found[0]["arithmetic"]
 
 
 def test_another_kind_of_processor_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -102,10 +102,17 @@ def test_bad_commands_are_one_sentence(
     assert len(err.splitlines()) == 1
 
 
-def test_the_command_ends_as_what_it_runs() -> None:
-    assert run(*COGMAP, "portable", sys.executable, "-c", "raise SystemExit(7)").returncode == 7
+def test_the_command_is_given_its_words_and_ends_as_what_it_runs() -> None:
+    script = "import sys; print(sys.argv[1:]); raise SystemExit(7)"
+    ended = run(*COGMAP, "portable", sys.executable, "-c", script, "demo", "--help")
+    assert (ended.returncode, ended.stdout) == (7, "['demo', '--help']\n")
 
 
-def test_help_is_of_what_is_asked() -> None:
-    assert "cogmap portable dask worker" in " ".join(run(*COGMAP, "portable", "--help").stdout.split())
-    assert "Explore a room" in run(*COGMAP, "portable", *COGMAP, "demo", "--help").stdout
+def test_help_is_of_what_is_asked(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["cogmap", "portable", "--help"])
+    with pytest.raises(SystemExit) as stop:
+        cli.main()
+    assert not stop.value.code
+    assert "cogmap portable dask worker" in " ".join(capsys.readouterr().out.split())

@@ -23,6 +23,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "7_the_homology_of_emergent_maps": {"VIEWS": 3000, "CHARTS": 600, "LANDMARKS": (100, 50)},
     "8_your_own_arena": {"MINUTES": 5, "CHARTS": 250},
     "9_imagine_expect_reach": {"VIEWS": 3000, "CHARTS": 600, "WIDTH": 90},
+    "10_any_body": {"VIEWS": 600},
 }
 
 
@@ -30,11 +31,13 @@ BEGIN = """
 %reset -f
 %cd -q {}
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from cogmap.coordinates import view_code
 from cogmap.features import vocabulary
 ConstrainedLayoutEngine.execute = lambda *_: None
 vocabulary.EXAMPLES = 2000
+view_code.STEPS = 60
 """
-"""Before the first cell: words are learnt from few descriptors, and nobody looks how figures are laid out."""
+"""Before the first cell: words are learnt from few descriptors, components from few batches; no layout."""
 GUARDS = """
 import gc
 gc.collect()

@@ -70,7 +70,7 @@ def test_even_a_small_one_learns(result: tuple[Path, dict[str, Any]]) -> None:
 
 def test_without_a_compass_it_says_what_can_be_said(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    metrics = demo(Arena.load("open_field"), out, views=60, landmarks=(30, 20))
+    metrics = demo(Arena.load("open_field"), out, views=60, landmarks=(30, 25))
     assert not metrics["heading_trusted"]
     assert "no loop of its charts closes" in metrics["reason"]
     assert "heading_median_deg" not in metrics

@@ -22,7 +22,6 @@ VIEWS = {
     "similarity": 200,
     "localisation": 200,
     "roadmap": 800,
-    "distinguishability": 200,
     "fusion": 200,
     "odour_ablation": 200,
 }
@@ -83,7 +82,10 @@ def test_no_two_have_the_same_name() -> None:
 @pytest.mark.parametrize("name", VIEWS)
 def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> None:
     out = tmp_path / name
-    result = run_experiment(name, out, views=VIEWS[name], seed=1)
+    assert_written(name, out, run_experiment(name, out, views=VIEWS[name], seed=1))
+
+
+def assert_written(name: str, out: Path, result: Result) -> None:
     assert result.metrics.keys() >= {"experiment", "arena", "views", "seed"} | KEYS[name]
     chosen = experiments()[name]
     assert result.metrics["arena"] == ", ".join((chosen.room, *chosen.extra_rooms))
@@ -96,10 +98,14 @@ def test_each_writes_metrics_figures_and_tables(name: str, tmp_path: Path) -> No
         pd.testing.assert_frame_equal(pd.read_parquet(out / f"{table}.parquet"), rows.reset_index(drop=True))
 
 
-def test_the_white_room_is_confused_and_the_blue_wall_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_white_room_is_confused_and_the_blue_wall_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     few = partial(distinguishability.betti, landmarks=(60, 30))
     monkeypatch.setattr(distinguishability, "betti", few)
-    metrics = run_experiment("distinguishability", views=1200).metrics
+    result = run_experiment("distinguishability", tmp_path / "out", views=1200, seed=1)
+    assert_written("distinguishability", tmp_path / "out", result)
+    metrics = result.metrics
     assert 0.4 < metrics["confusion_white"] < 0.6
     assert metrics["confusion_blue_wall"] < 0.02
 
