@@ -54,6 +54,7 @@ def test_portable_arithmetic_is_the_same_on_every_processor(name: str, portable:
     assert plain.endswith("False")
 
 
+@pytest.mark.full
 def test_all_that_is_begun_on_one_processor_can_be_ended_on_another(tmp_path: Path) -> None:
     """A recording, a map and a table; the recording is begun without portable arithmetic."""
     environment = processor("avx2", tmp_path)
