@@ -1,0 +1,86 @@
+"""Ways between postures: a roadmap of remembered views whose edges are as long as motors must work."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import scipy.sparse as sp
+from jaxtyping import Float, Int
+from scipy.sparse.csgraph import dijkstra
+
+from cogmap.control.visual_jacobian import VisualJacobian, implied_work
+from cogmap.graph import nearest_points
+from cogmap.graph.neighbour_graph import neighbour_graph
+
+NEIGHBOURS, ONE_SIDED = 15, 5
+"""Of the neighbour graph, see there."""
+AHEAD = 30
+"""Nearest remembered views among which the next one of a way is chosen."""
+
+
+class Sight(NamedTuple):
+    """Remembered views that are near to some views, the nearest first."""
+
+    indices: Int[np.ndarray, "views near"]
+    distances: Float[np.ndarray, "views near"]
+    """Of codes."""
+    work: Float[np.ndarray, "views near motors"]
+    """Of the motors, command · s, that leads there."""
+
+
+class PostureWays:
+    """Shortest ways over remembered views, in what motors must work, implied by the visual Jacobian.
+
+    Parameters
+    ----------
+    codes
+        Of the views that are remembered, spread evenly (`EvenMemory`).
+    jacobian
+        Learnt with the same code.
+    """
+
+    def __init__(self, codes: Float[np.ndarray, "kept features"], jacobian: VisualJacobian) -> None:
+        self.codes, self.jacobian = codes, jacobian
+        self._jacobians = jacobian.at(codes)
+
+    @cached_property
+    def graph(self) -> sp.csr_array:
+        """Neighbours, and the work (command · s) from one to the other."""
+        graph = sp.csr_array(sp.triu(neighbour_graph(self.codes, NEIGHBOURS, one_sided=ONE_SIDED), 1))
+        starts, ends = graph.nonzero()
+        change, (first, second) = self.codes[ends] - self.codes[starts], self._jacobians[[starts, ends]]
+        length = (_length(implied_work(first, change)) + _length(implied_work(second, change))) / 2
+        graph = sp.csr_array((length, (starts, ends)), shape=graph.shape)
+        return sp.csr_array(graph + graph.T)
+
+    @cached_property
+    def spacing(self) -> float:
+        """Median distance of the codes of remembered views that are next to each other."""
+        return float(np.median(nearest_points(self.codes, 1).distances))
+
+    def look(self, codes: Float[np.ndarray, "views features"]) -> Sight:
+        """Find what is remembered near views, and how to get there."""
+        near, distances = nearest_points(self.codes, AHEAD, queries=codes)
+        here = np.repeat(self.jacobian.at(codes), AHEAD, axis=0)
+        change = (self.codes[near] - codes[:, None]).reshape(-1, codes.shape[1])
+        # the mean of both ends: exact to second order
+        work = (implied_work(here, change) + implied_work(self._jacobians[near.ravel()], change)) / 2
+        return Sight(near, distances, work.reshape(*near.shape, -1))
+
+    def work_left(self, sight: Sight) -> Float[np.ndarray, "goals kept"]:
+        """Measure from each remembered view to the goals that these are near to; infinite without a way."""
+        goals, kept = len(sight.indices), len(self.codes)
+        rows = np.repeat(np.arange(goals), NEIGHBOURS)
+        lengths = _length(sight.work[:, :NEIGHBOURS]).ravel()
+        ends = sp.csr_array((lengths, (rows, sight.indices[:, :NEIGHBOURS].ravel())), shape=(goals, kept))
+        # A goal is left, never passed.
+        joined = sp.csr_array(sp.block_array([[self.graph, None], [ends, sp.csr_array((goals, goals))]]))
+        left: np.ndarray = dijkstra(joined, indices=np.arange(kept, kept + goals))[:, :kept]
+        return left
+
+
+def _length(work: np.ndarray) -> np.ndarray:
+    length: np.ndarray = np.linalg.norm(work, axis=-1)
+    return length
