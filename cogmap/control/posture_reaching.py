@@ -106,11 +106,11 @@ class PostureReaching:
 
     def _decide(self, live: Int[np.ndarray, " live"], views: Any) -> Float[np.ndarray, "live motors"]:
         """Choose the work of the motors (command · s), and tell of which it is over."""
-        ways, pace = self._reacher.ways, self._reacher.jacobian.pace
+        ways, pace = self._reacher.ways, self._reacher.jacobian.pace_
         codes = self._reacher.encode(views).astype(np.float64)
         sight = ways.look(codes)
         far = np.linalg.norm(sight.work, axis=2)
-        left = far + np.take_along_axis(self._left[live], sight.indices, axis=1)
+        left = far * ways.costs[sight.indices] + np.take_along_axis(self._left[live], sight.indices, axis=1)
         left[far < STEP * pace] = np.inf
         rows, best = np.arange(len(live)), left.argmin(axis=1)
         work, left = sight.work[rows, best], left[rows, best]
@@ -132,6 +132,7 @@ class PostureReaching:
         for row in np.flatnonzero(kicked):
             way = self._rngs[live[row]].standard_normal(work.shape[1])
             work[row] = KICK * pace * way / np.linalg.norm(way)
+            self._left[live[row], sight.indices[row, best[row]]] = np.inf
         self._judge(live, left, sight)
         return work
 

@@ -16,6 +16,8 @@ from cogmap.graph.neighbour_graph import neighbour_graph
 
 NEIGHBOURS, ONE_SIDED = 15, 5
 """Of the neighbour graph, see there."""
+DANGER, CLEARANCE = 10.0, 2.0
+"""How much dearer work is where something held the body, and how far around, spacings of what is remembered."""
 AHEAD = 30
 """Nearest remembered views among which the next one of a way is chosen."""
 
@@ -52,8 +54,18 @@ class PostureWays:
         starts, ends = graph.nonzero()
         change, (first, second) = self.codes[ends] - self.codes[starts], self._jacobians[[starts, ends]]
         length = (_length(implied_work(first, change)) + _length(implied_work(second, change))) / 2
+        length *= (self.costs[starts] + self.costs[ends]) / 2
         graph = sp.csr_array((length, (starts, ends)), shape=graph.shape)
         return sp.csr_array(graph + graph.T)
+
+    @cached_property
+    def costs(self) -> Float[np.ndarray, " kept"]:
+        """Of work near each view: more than 1 where something held the body nearby."""
+        held = self.jacobian.held_codes
+        if not len(held):
+            return np.ones(len(self.codes))
+        distances = nearest_points(held, 1, queries=self.codes).distances[:, 0]
+        return 1 + DANGER * np.exp(-np.square(distances / (CLEARANCE * self.spacing)))
 
     @cached_property
     def spacing(self) -> float:

@@ -11,6 +11,8 @@ from cogmap.inputs import check_array
 
 TRANSITIONS = 40
 """Nearest ones that a Jacobian is fitted to."""
+HELD = 0.5
+"""Share of the work asked for below which what was seen to be done tells that something held the body."""
 RIDGE = 1e-3
 """Of the fit, and a thousandth of it of its inverse, as shares of the mean square along a motor."""
 
@@ -53,7 +55,16 @@ class VisualJacobian:
             raise CogmapError(f"{len(work)} transitions teach no Jacobian; babble at least {TRANSITIONS}")
         self._codes, self._work = codes, work
         self._near = NearestNeighbors(n_neighbors=TRANSITIONS).fit(codes[:-1])
-        self.pace = float(np.median(np.linalg.norm(work, axis=1)))
+        self.pace_ = float(np.median(np.linalg.norm(work, axis=1)))
+        self.held_ = np.zeros(len(work), bool)
+        change = np.diff(codes, axis=0)
+        done = (implied_work(self.at(codes[:-1]), change) + implied_work(self.at(codes[1:]), change)) / 2
+        self.held_ = (done * work).sum(axis=1) < HELD * np.square(work).sum(axis=1)
+
+    @property
+    def held_codes(self) -> Float[np.ndarray, "held features"]:
+        """Codes of views after which something held the body."""
+        return self._codes[:-1][self.held_]
 
     def near(self, codes: Float[np.ndarray, "queries features"]) -> Int[np.ndarray, "queries transitions"]:
         """Find the transitions that begin nearest to each view."""
@@ -69,8 +80,9 @@ class VisualJacobian:
     ) -> Jacobians:
         """Fit the change of whatever features of the views, by transitions that `near` found."""
         work, change = self._work[near], features[near + 1] - features[near]
-        gram = np.einsum("qtm,qtn->qmn", work, work)
-        found: np.ndarray = np.linalg.solve(_ridged(gram, RIDGE), np.swapaxes(work, 1, 2) @ change)
+        # what a held motor should have done tells nothing
+        counted = np.swapaxes(np.where(self.held_[near][..., None], 0, work), 1, 2)
+        found: np.ndarray = np.linalg.solve(_ridged(counted @ work, RIDGE), counted @ change)
         return found
 
 
