@@ -109,11 +109,15 @@ class PostureReaching:
         ways, pace = self._reacher.ways, self._reacher.jacobian.pace_
         codes = self._reacher.encode(views).astype(np.float64)
         sight = ways.look(codes)
-        far = np.linalg.norm(sight.work, axis=2)
+        far = sight.effort
         left = far * ways.costs[sight.indices] + np.take_along_axis(self._left[live], sight.indices, axis=1)
         left[far < STEP * pace] = np.inf
         rows, best = np.arange(len(live)), left.argmin(axis=1)
         work, left = sight.work[rows, best], left[rows, best]
+        # Whoever is here and has farther to go than was thought remembers it (learning real-time A*).
+        known = self._left[live[:, None], sight.indices]
+        learnt = np.maximum(known, left[:, None] - far * ways.costs[sight.indices])
+        self._left[live[:, None], sight.indices] = np.where(far < STEP * pace, learnt, known)
 
         straight, unlike = self._straight(live, codes)
         near = np.linalg.norm(straight, axis=1)
@@ -132,7 +136,6 @@ class PostureReaching:
         for row in np.flatnonzero(kicked):
             way = self._rngs[live[row]].standard_normal(work.shape[1])
             work[row] = KICK * pace * way / np.linalg.norm(way)
-            self._left[live[row], sight.indices[row, best[row]]] = np.inf
         self._judge(live, left, sight)
         return work
 

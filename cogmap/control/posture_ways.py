@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from jaxtyping import Float, Int
 from scipy.sparse.csgraph import dijkstra
 
-from cogmap.control.visual_jacobian import VisualJacobian, implied_work
+from cogmap.control.visual_jacobian import Jacobians, VisualJacobian, implied_work
 from cogmap.graph import nearest_points
 from cogmap.graph.neighbour_graph import neighbour_graph
 
@@ -18,6 +18,8 @@ NEIGHBOURS, ONE_SIDED = 15, 5
 """Of the neighbour graph, see there."""
 DANGER, CLEARANCE = 10.0, 2.0
 """How much dearer work is where something held the body, and how far around, spacings of what is remembered."""
+UNEXPLAINED = 0.8
+"""Share of a change of codes beyond which, where no work explains it, it is no way but a look-alike."""
 AHEAD = 30
 """Nearest remembered views among which the next one of a way is chosen."""
 
@@ -30,6 +32,8 @@ class Sight(NamedTuple):
     """Of codes."""
     work: Float[np.ndarray, "views near motors"]
     """Of the motors, command · s, that leads there."""
+    effort: Float[np.ndarray, "views near"]
+    """Its length; infinite where views are alike but no work leads from one to the other."""
 
 
 class PostureWays:
@@ -53,9 +57,11 @@ class PostureWays:
         graph = sp.csr_array(sp.triu(neighbour_graph(self.codes, NEIGHBOURS, one_sided=ONE_SIDED), 1))
         starts, ends = graph.nonzero()
         change, (first, second) = self.codes[ends] - self.codes[starts], self._jacobians[[starts, ends]]
-        length = (_length(implied_work(first, change)) + _length(implied_work(second, change))) / 2
-        length *= (self.costs[starts] + self.costs[ends]) / 2
-        graph = sp.csr_array((length, (starts, ends)), shape=graph.shape)
+        _, effort = _work_between(first, second, change)
+        known = np.flatnonzero(np.isfinite(effort))
+        starts, ends = starts[known], ends[known]
+        effort = effort[known] * (self.costs[starts] + self.costs[ends]) / 2
+        graph = sp.csr_array((effort, (starts, ends)), shape=graph.shape)
         return sp.csr_array(graph + graph.T)
 
     @cached_property
@@ -77,22 +83,29 @@ class PostureWays:
         near, distances = nearest_points(self.codes, AHEAD, queries=codes)
         here = np.repeat(self.jacobian.at(codes), AHEAD, axis=0)
         change = (self.codes[near] - codes[:, None]).reshape(-1, codes.shape[1])
-        # the mean of both ends: exact to second order
-        work = (implied_work(here, change) + implied_work(self._jacobians[near.ravel()], change)) / 2
-        return Sight(near, distances, work.reshape(*near.shape, -1))
+        work, effort = _work_between(here, self._jacobians[near.ravel()], change)
+        return Sight(near, distances, work.reshape(*near.shape, -1), effort.reshape(near.shape))
 
     def work_left(self, sight: Sight) -> Float[np.ndarray, "goals kept"]:
         """Measure from each remembered view to the goals that these are near to; infinite without a way."""
         goals, kept = len(sight.indices), len(self.codes)
-        rows = np.repeat(np.arange(goals), NEIGHBOURS)
-        lengths = _length(sight.work[:, :NEIGHBOURS]).ravel()
-        ends = sp.csr_array((lengths, (rows, sight.indices[:, :NEIGHBOURS].ravel())), shape=(goals, kept))
+        known = np.isfinite(sight.effort) & (np.arange(AHEAD) < NEIGHBOURS)
+        ends = sp.csr_array(
+            (sight.effort[known], (known.nonzero()[0], sight.indices[known])), shape=(goals, kept)
+        )
         # A goal is left, never passed.
         joined = sp.csr_array(sp.block_array([[self.graph, None], [ends, sp.csr_array((goals, goals))]]))
         left: np.ndarray = dijkstra(joined, indices=np.arange(kept, kept + goals))[:, :kept]
         return left
 
 
-def _length(work: np.ndarray) -> np.ndarray:
-    length: np.ndarray = np.linalg.norm(work, axis=-1)
-    return length
+def _work_between(
+    here: Jacobians, there: Jacobians, change: Float[np.ndarray, "pairs features"]
+) -> tuple[Float[np.ndarray, "pairs motors"], Float[np.ndarray, " pairs"]]:
+    """Give the work from view to view and its length, infinite where it does not explain how they differ."""
+    ends = [(end, implied_work(end, change)) for end in (here, there)]
+    rest = [np.linalg.norm(change - np.einsum("pmf,pm->pf", end, work), axis=1) for end, work in ends]
+    # the mean of both ends: exact to second order
+    mean = (ends[0][1] + ends[1][1]) / 2
+    alike = np.maximum(*rest) > UNEXPLAINED * np.linalg.norm(change, axis=1)
+    return mean, np.where(alike, np.inf, np.linalg.norm(mean, axis=1))
