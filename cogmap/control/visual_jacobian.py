@@ -11,7 +11,7 @@ from cogmap.inputs import check_array
 
 TRANSITIONS = 40
 """Nearest ones that a Jacobian is fitted to."""
-HELD = 0.5
+HELD = 0.3
 """Share of the work asked for below which what was seen to be done tells that something held the body."""
 RIDGE = 1e-3
 """Of the fit, and a thousandth of it of its inverse, as shares of the mean square along a motor."""
