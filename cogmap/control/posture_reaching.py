@@ -33,8 +33,8 @@ ALIKE = 3
 """Remembered views, at most, that may look more like what is seen than a goal that is reached."""
 NEXT = 15
 """Remembered views, at most, that look more like what is seen than a goal that is the next to go to."""
-STALLED, KICKS = 12, 6
-"""Looks without coming nearer after which it is kicked, and kicks in a row after which it is stuck."""
+STALLED, KICKS = 12, 8
+"""Looks without coming nearer after which it is kicked, and kicks after which it is stuck."""
 KICK = 2.0
 """Size of a kick, babbled steps."""
 PATIENCE = 10
@@ -165,7 +165,6 @@ class PostureReaching:
         nearer = left < self._best[live] - CLOSE * pace
         self._best[live] = np.where(nearer, left, self._best[live])
         self._stale[live] = np.where(nearer, 0, self._stale[live] + 1)
-        self._kicks[live[nearer]] = 0
         kicked = self._stale[live] >= STALLED
         self._kicks[live] += kicked
         self._stale[live[kicked]] = 0

@@ -100,11 +100,11 @@ class PostureWays:
 
 
 def _work_between(
-    here: Jacobians, there: Jacobians, change: Float[np.ndarray, "pairs features"]
-) -> tuple[Float[np.ndarray, "pairs motors"], Float[np.ndarray, " pairs"]]:
+    here: Jacobians, there: Jacobians, change: Float[np.ndarray, "queries features"]
+) -> tuple[Float[np.ndarray, "queries motors"], Float[np.ndarray, " queries"]]:
     """Give the work from view to view and its length, infinite where it does not explain how they differ."""
     ends = [(end, implied_work(end, change)) for end in (here, there)]
-    rest = [np.linalg.norm(change - np.einsum("pmf,pm->pf", end, work), axis=1) for end, work in ends]
+    rest = [np.linalg.norm(change - np.einsum("qmf,qm->qf", end, work), axis=1) for end, work in ends]
     # the mean of both ends: exact to second order
     mean = (ends[0][1] + ends[1][1]) / 2
     alike = np.maximum(*rest) > UNEXPLAINED * np.linalg.norm(change, axis=1)

@@ -5,18 +5,21 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float, Int
 from sklearn.neighbors import NearestNeighbors
+from sklearn.utils import gen_batches
 
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
 
 TRANSITIONS = 40
 """Nearest ones that a Jacobian is fitted to."""
+BATCH = 512
+"""Jacobians fitted together."""
 HELD = 0.3
 """Share of the work asked for below which what was seen to be done tells that something held the body."""
 RIDGE = 1e-3
 """Of the fit, and a thousandth of it of its inverse, as shares of the mean square along a motor."""
 
-Jacobians = Float[np.ndarray, "views motors features"]
+Jacobians = Float[np.ndarray, "queries motors features"]
 
 
 class VisualJacobian:
@@ -73,7 +76,8 @@ class VisualJacobian:
 
     def at(self, codes: Float[np.ndarray, "queries features"]) -> Jacobians:
         """Give how each feature changes per command · s of each motor, around views."""
-        return self.fitted(self.near(codes), self._codes)
+        near = self.near(codes)
+        return np.concatenate([self.fitted(near[part], self._codes) for part in gen_batches(len(near), BATCH)])
 
     def fitted(
         self, near: Int[np.ndarray, "queries transitions"], features: Float[np.ndarray, "views features"]
@@ -87,8 +91,8 @@ class VisualJacobian:
 
 
 def implied_work(
-    jacobians: Jacobians, change: Float[np.ndarray, "views features"]
-) -> Float[np.ndarray, "views motors"]:
+    jacobians: Jacobians, change: Float[np.ndarray, "queries features"]
+) -> Float[np.ndarray, "queries motors"]:
     """Give the work of motors (command · s) that changes what is seen most nearly so: J⁺ Δc."""
     gram = np.einsum("vmf,vnf->vmn", jacobians, jacobians)
     asked = np.einsum("vmf,vf->vm", jacobians, change)
