@@ -115,9 +115,11 @@ class PostureReaching:
         rows, best = np.arange(len(live)), left.argmin(axis=1)
         work, left = sight.work[rows, best], left[rows, best]
         # Whoever is here and has farther to go than was thought remembers it (learning real-time A*).
+        here = (far < STEP * pace) & np.isfinite(left)[:, None]
+        toll = np.where(here, far * ways.costs[sight.indices], np.inf)
         known = self._left[live[:, None], sight.indices]
-        learnt = np.maximum(known, left[:, None] - far * ways.costs[sight.indices])
-        self._left[live[:, None], sight.indices] = np.where(far < STEP * pace, learnt, known)
+        learnt = np.where(here, left[:, None], 0) - toll
+        self._left[live[:, None], sight.indices] = np.maximum(known, learnt)
 
         straight, unlike = self._straight(live, codes)
         near = np.linalg.norm(straight, axis=1)
@@ -136,7 +138,7 @@ class PostureReaching:
         for row in np.flatnonzero(kicked):
             way = self._rngs[live[row]].standard_normal(work.shape[1])
             work[row] = KICK * pace * way / np.linalg.norm(way)
-        self._judge(live, left, sight)
+        self._judge(live, sight)
         return work
 
     def _straight(
@@ -172,13 +174,12 @@ class PostureReaching:
         self._best[live[kicked]] = np.inf
         return kicked
 
-    def _judge(
-        self, live: Int[np.ndarray, " live"], left: Float[np.ndarray, " live"], sight: Sight
-    ) -> None:
+    def _judge(self, live: Int[np.ndarray, " live"], sight: Sight) -> None:
         """Tell of which it is over."""
         unlike = sight.distances[:, 0] > UNLIKE * self._reacher.ways.spacing
         self._unlike[live] = np.where(unlike, self._unlike[live] + 1, 0)
         self.outcomes_[live[self._kicks[live] > KICKS]] = Outcome.STUCK
-        self.outcomes_[live[~np.isfinite(left)]] = Outcome.UNREACHABLE
+        apart = np.isinf(self._left[live[:, None], sight.indices]).all(axis=1)
+        self.outcomes_[live[apart]] = Outcome.UNREACHABLE
         self.outcomes_[live[self._unlike[live] >= PATIENCE]] = Outcome.LOST
         self.outcomes_[live[self._settled[live] >= SETTLED]] = Outcome.ARRIVED

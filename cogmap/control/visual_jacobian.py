@@ -77,7 +77,9 @@ class VisualJacobian:
     def at(self, codes: Float[np.ndarray, "queries features"]) -> Jacobians:
         """Give how each feature changes per command · s of each motor, around views."""
         near = self.near(codes)
-        return np.concatenate([self.fitted(near[part], self._codes) for part in gen_batches(len(near), BATCH)])
+        return np.concatenate(
+            [self.fitted(near[part], self._codes) for part in gen_batches(len(near), BATCH)]
+        )
 
     def fitted(
         self, near: Int[np.ndarray, "queries transitions"], features: Float[np.ndarray, "views features"]

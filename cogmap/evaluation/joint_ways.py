@@ -20,7 +20,9 @@ MOVES = ((0, 1), (1, 0), (1, 1), (1, -1), (1, 2), (2, 1), (1, -2), (2, -1))
 """Between cells, and back: ways on the grid are 1.4 % too long on average, if they are not straight."""
 
 
-def ways_are_free(arena: Arena, body: Body, ways: list[Float[np.ndarray, "_ joints"]]) -> Bool[np.ndarray, " ways"]:
+def ways_are_free(
+    arena: Arena, body: Body, ways: list[Float[np.ndarray, "_ joints"]]
+) -> Bool[np.ndarray, " ways"]:
     """Tell which ways touch nothing, straight from posture to posture (rad), the short way round."""
     free = np.empty(len(ways), bool)
     for k, way in enumerate(ways):
@@ -35,8 +37,7 @@ def ways_are_free(arena: Arena, body: Body, ways: list[Float[np.ndarray, "_ join
 
 def joint_length(way: Float[np.ndarray, "postures *ways joints"]) -> np.ndarray:
     """Measure a way from posture to posture, the short way round: the root of the sum of squares, rad."""
-    length: np.ndarray = np.linalg.norm(wrap_angle(np.diff(way, axis=0)), axis=-1).sum(axis=0)
-    return length
+    return np.asarray(np.linalg.norm(wrap_angle(np.diff(way, axis=0)), axis=-1).sum(axis=0))
 
 
 def shortest_joint_ways(

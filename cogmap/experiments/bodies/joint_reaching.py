@@ -112,9 +112,7 @@ def _reach(
     goals = fresh[ends]
     reacher = PostureReacher(encode, walk.views, walk.require("commands"), walk.times, seed=seed)
     go = reacher.towards(np.asarray(goals.views))
-    gone = journeys(
-        room, go, eye, joints[starts], body=body, most_steps=MOST_STEPS, seed=seed + JOURNEY_SEED
-    )
+    gone = journeys(room, go, eye, joints[starts], body=body, most_steps=MOST_STEPS, seed=seed + JOURNEY_SEED)
     return _Journeys(gone, goals, _scored(room, body, gone, goals.require("joints"), go.outcomes_))
 
 

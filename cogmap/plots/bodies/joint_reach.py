@@ -88,11 +88,11 @@ def _draw_torus(axes: Axes, arena: Arena, body: Body, way: Float[np.ndarray, "lo
     grid = np.stack(np.meshgrid(angles, angles), axis=-1)
     free = body.is_free(arena, grid.reshape(-1, 2)).reshape(CELLS, CELLS)
     shade = np.ma.masked_array(np.ones(free.shape), free)
-    axes.imshow(
-        shade, origin="lower", extent=(-180, 180, -180, 180), cmap=colormaps["Greys"], vmin=0, vmax=4
-    )
+    axes.imshow(shade, origin="lower", extent=(-180, 180, -180, 180), cmap=colormaps["Greys"], vmin=0, vmax=4)
     # unrolled, and drawn once for each copy of the square that it passes through
-    unrolled = np.rad2deg(way[0] + np.vstack([np.zeros(2), np.cumsum(wrap_angle(np.diff(way, axis=0)), axis=0)]))
+    unrolled = np.rad2deg(
+        way[0] + np.vstack([np.zeros(2), np.cumsum(wrap_angle(np.diff(way, axis=0)), axis=0)])
+    )
     turns = np.unique(np.round(unrolled / 360).astype(int), axis=0)
     for turn in turns:
         axes.plot(*(unrolled - 360 * turn).T, color=GOOD, linewidth=1.6, zorder=4)

@@ -29,7 +29,9 @@ def ways(babbled: tuple[np.ndarray, np.ndarray]) -> PostureWays:
     return PostureWays(code(joints[:1500]), VisualJacobian(code(fine), steps[:7999]))
 
 
-def test_work_left_is_the_way_round_the_torus(ways: PostureWays, babbled: tuple[np.ndarray, np.ndarray]) -> None:
+def test_work_left_is_the_way_round_the_torus(
+    ways: PostureWays, babbled: tuple[np.ndarray, np.ndarray]
+) -> None:
     kept = babbled[0][:1500]
     left = ways.work_left(ways.look(code(GOALS)))
     direct = np.linalg.norm(wrap_angle(kept - GOALS[:, None]), axis=2)
