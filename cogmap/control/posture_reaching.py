@@ -52,7 +52,9 @@ REASONS = {
 
 
 class PostureReaching:
-    """A policy (`arena.Policy`) that moves joints to where images were taken; `PostureReacher.towards` makes it.
+    """A policy (`arena.Policy`) that moves joints to where images were taken.
+
+    `PostureReacher.towards` makes it.
 
     At each look it chooses, among the remembered views that look most like what is seen, the one over which
     the least work leads to the goal, and lets the motors do what the visual Jacobian says leads there. So a

@@ -17,7 +17,7 @@ from cogmap.graph.neighbour_graph import neighbour_graph
 NEIGHBOURS, ONE_SIDED = 15, 5
 """Of the neighbour graph, see there."""
 DANGER, CLEARANCE = 10.0, 2.0
-"""How much dearer work is where something held the body, and how far around, spacings of what is remembered."""
+"""How much dearer work is where something held the body, and how far around, spacings of memory."""
 UNEXPLAINED = 0.8
 """Share of a change of codes beyond which, where no work explains it, it is no way but a look-alike."""
 AHEAD = 30

@@ -1,4 +1,4 @@
-"""The visual Jacobian (interaction matrix): how what is seen changes by what motors do, learnt by babbling."""
+"""The visual Jacobian (interaction matrix): how what is seen changes by what motors do."""
 
 from __future__ import annotations
 

@@ -46,8 +46,8 @@ def answer(request: dict[str, Any]) -> list[list[list[float]] | None]:
 def answer_joints(request: dict[str, Any]) -> list[list[list[float]] | None]:
     """Grow one roadmap over the joints of an arm, then plan between the pairs on it.
 
-    OMPL's own circles have no door to Python, so that joints go on a line of two turns, where each goal stands
-    wherever it is less than a turn from the start, and the shortest way counts.
+    States of OMPL's circles cannot be read from Python, so that joints go on lines of two turns, where a goal
+    stands wherever it is less than a turn from the start, and the shortest way counts.
     """
     arena, arm = Arena.parse(request["arena"]), Arm(**request["arm"])
     util.RNG.setSeed(request["seed"] + 1)

@@ -73,13 +73,13 @@ def joint_reaching(trial: BodyTrial, conditions: Conditions, eye: AnyEye) -> Joi
         return JointReaching({}, {}, {}, {})
     eye, seed, room = conditions.camera or eye, conditions.seed, conditions.room
     among = room.model_copy(update={"boxes": (*room.boxes, *OBSTACLES)})
-    found = {"": _reach(conditions, body, eye, trial.walk, trial.fresh, trial.coordinates.encode)}
+    found = {"": _reach(conditions, body, eye, (trial.walk, trial.fresh), trial.coordinates.encode)}
     others = {name: (room, body.model_copy(update=fields)) for name, fields in DISTURBANCES.items()}
     for name, (place, arm) in {**others, "obstacles_": (among, body)}.items():
         told = replace(conditions, room=place, body=arm)
         walk, fresh = (told.explore(Babble(), eye, body=arm, fresh=again) for again in (False, True))
         encode = ViewCode(seed=seed).fit(walk.views).transform
-        found[name] = _reach(told, arm, eye, walk, fresh, encode)
+        found[name] = _reach(told, arm, eye, (walk, fresh), encode)
     metrics = {
         f"{name}{key}": value for name, part in found.items() for key, value in _summary(part.table).items()
     }
@@ -100,11 +100,11 @@ def _reach(
     conditions: Conditions,
     body: Arm,
     eye: AnyEye,
-    walk: Recording,
-    fresh: Recording,
+    walks: tuple[Recording, Recording],
     encode: Callable[[Any], Float[np.ndarray, "views features"]],
 ) -> _Journeys:
     """Let the arm reach fresh views from others."""
+    walk, fresh = walks
     room, seed, joints = conditions.room, conditions.seed, fresh.require("joints")
     wide = body.model_copy(update={"width": body.width + 2 * CLEAR})
     clear = np.flatnonzero(wide.is_free(room, joints))
@@ -120,8 +120,7 @@ def _scored(
     room: Arena, body: Arm, gone: Journeys, goals: Float[np.ndarray, "pairs 2"], outcomes: np.ndarray
 ) -> pd.DataFrame:
     """Measure journeys, a row each."""
-    there = gone.joints
-    assert there is not None
+    there = np.asarray(gone.joints)
     errors = np.rad2deg(np.abs(wrap_angle(there[-1] - goals)))
     shortest = shortest_joint_ways(room, body, np.stack([there[0], goals], axis=1))
     return pd.DataFrame(
@@ -152,8 +151,7 @@ def _summary(table: pd.DataFrame) -> dict[str, float]:
 
 def _peer(room: Arena, body: Arm, ours: _Journeys, milestones: int, seed: int) -> dict[str, Any]:
     """Let OMPL's roadmap plan between the same postures."""
-    assert ours.gone.joints is not None
-    pairs = np.stack([ours.gone.joints[0], ours.goals.require("joints")], axis=1)
+    pairs = np.stack([np.asarray(ours.gone.joints)[0], ours.goals.require("joints")], axis=1)
     paths = prm_joint_paths(room, pairs, arm=body, milestones=milestones, seed=seed)
     if paths is None:
         return {"prm": False}
@@ -170,8 +168,7 @@ def _peer(room: Arena, body: Arm, ours: _Journeys, milestones: int, seed: int) -
 
 def _film(room: Arena, body: Arm, eye: AnyEye, ours: _Journeys) -> Figure:
     """Draw the journey that went the longest way round of those that arrived."""
-    table, there = ours.table, ours.gone.joints
-    assert there is not None
+    table, there = ours.table, np.asarray(ours.gone.joints)
     straight = np.linalg.norm(wrap_angle(there[0] - ours.goals.require("joints")), axis=1)
     arrived = table["outcome"] == Outcome.ARRIVED.name.lower()
     shown = int((table["shortest_rad"] / straight).where(arrived, 0.0).argmax())
@@ -182,4 +179,4 @@ def _film(room: Arena, body: Arm, eye: AnyEye, ours: _Journeys) -> Figure:
     views = np.empty((FRAMES, eye.height, eye.width, 3), np.uint8)
     see(eye, room, body, way[frames], out=views, rng=np.random.default_rng(0))
     goal = ours.goals.views[shown]
-    return plot_joint_reach(room, body, way, frames, views, np.asarray(goal))
+    return plot_joint_reach(room, body, way, frames=frames, views=views, goal=np.asarray(goal))

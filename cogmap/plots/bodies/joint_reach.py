@@ -24,6 +24,7 @@ def plot_joint_reach(
     arena: Arena,
     body: Body,
     way: Float[np.ndarray, "looks 2"],
+    *,
     frames: Int[np.ndarray, " frames"],
     views: UInt8[np.ndarray, "frames height width 3"],
     goal: UInt8[np.ndarray, "height width 3"],

@@ -53,7 +53,7 @@ def test_look_alikes_are_no_way() -> None:
     codes = np.column_stack([joints, np.zeros(len(joints))])
     learnt = VisualJacobian(codes, work)
     # a sheet above the first one: no work leads there
-    both = np.vstack([codes[::10], codes[::10] + [0.0, 0.0, 0.05]])
+    both = np.vstack([codes[::10], codes[::10] + np.array([0.0, 0.0, 0.05])])
     ends = np.array(PostureWays(both, learnt).graph.nonzero())
     assert len(ends.T)
     steep = np.abs(both[ends[0], 2] - both[ends[1], 2])

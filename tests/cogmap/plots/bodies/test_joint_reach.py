@@ -9,7 +9,7 @@ def test_views_goal_arm_and_way_are_drawn() -> None:
     way = np.column_stack([np.linspace(2.5, 3.5, 11), np.linspace(0.0, 1.0, 11)])
     frames, views = np.array([0, 5, 10]), np.zeros((3, 4, 4, 3), np.uint8)
     goal = np.full((4, 4, 3), 9, np.uint8)
-    *strip, above, square = plot_joint_reach(room, body, way, frames, views, goal).axes
+    *strip, above, square = plot_joint_reach(room, body, way, frames=frames, views=views, goal=goal).axes
     np.testing.assert_array_equal(strip[3].images[0].get_array(), goal)
     hands = [line.get_xydata()[-1] for line in above.lines if line.get_linewidth() == 4]
     np.testing.assert_allclose(hands, body.segments(way[frames])[:, -1, 1])
