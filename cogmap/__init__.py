@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cogmap import cells, evaluation, features, graph, navigation, plots, shape, testing
-    from cogmap.control import MotorModel, Reacher
+    from cogmap.control import MotorModel, PostureReacher, Reacher
     from cogmap.coordinates import GeneralisedCoordinates
     from cogmap.errors import CogmapError, UnlikeArithmeticWarning, UntrustedMapWarning
     from cogmap.evaluation.scoring import score
@@ -31,6 +31,7 @@ __all__ = [
     "Localiser",
     "MotorModel",
     "Plan",
+    "PostureReacher",
     "Reacher",
     "UnlikeArithmeticWarning",
     "UntrustedMapWarning",
@@ -49,7 +50,7 @@ __all__ = [
 ]
 
 _HOMES = {
-    "control": ("MotorModel", "Reacher"),
+    "control": ("MotorModel", "PostureReacher", "Reacher"),
     "coordinates": ("GeneralisedCoordinates",),
     "errors": ("CogmapError", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
     "evaluation.scoring": ("score",),

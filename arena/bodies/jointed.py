@@ -189,7 +189,9 @@ class Linkages:
         body = self._body
         moving = velocities * np.array(body.motor_gains or 1.0)
         if body.slip:
-            moving *= 1 + body.slip * np.array([rng.standard_normal(moving.shape[1]) for rng in rngs])
+            moving *= 1 + body.slip * np.reshape(
+                [rng.standard_normal(moving.shape[1]) for rng in rngs], moving.shape
+            )
         joints, touched = self._joints[which], np.zeros(len(which), bool)
         turn_all(joints, body.chain, body.ranges, body.radius, self._edges, moving, dt, touched)
         self._joints[which], self._touched[which] = joints, touched

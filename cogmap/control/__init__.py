@@ -2,7 +2,8 @@
 
 from cogmap.control.look_round import LookRound
 from cogmap.control.motor_model import MotorModel
+from cogmap.control.posture_reacher import PostureReacher
 from cogmap.control.reacher import Reacher
 from cogmap.control.reaching import Outcome, Reaching
 
-__all__ = ["LookRound", "MotorModel", "Outcome", "Reacher", "Reaching"]
+__all__ = ["LookRound", "MotorModel", "Outcome", "PostureReacher", "Reacher", "Reaching"]

@@ -47,3 +47,9 @@ def image_codes(
                 blurred = cv2.GaussianBlur(fine, (0, 0), 1.0)
                 code[:] = cv2.resize(blurred, (width, height), interpolation=cv2.INTER_AREA).ravel()
     return codes
+
+
+def sharp_codes(views: Any) -> Float32[np.ndarray, "views features"]:
+    """Code views so finely that they tell small steps between views which are known to be near."""
+    height, width = views.shape[1:3]
+    return image_codes(views, width=width // 2, height=min(height, width // 2))

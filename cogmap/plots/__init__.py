@@ -13,6 +13,7 @@ from cogmap.plots.acting.journeys import plot_journeys
 from cogmap.plots.acting.looking_round import plot_looking_round
 from cogmap.plots.acting.reached import plot_reached
 from cogmap.plots.bodies.coordinates import plot_coordinates
+from cogmap.plots.bodies.joint_reach import plot_joint_reach
 from cogmap.plots.bodies.look_alikes import plot_look_alikes
 from cogmap.plots.cells.afferents import plot_afferents
 from cogmap.plots.cells.cell_types import plot_cell_types
@@ -64,6 +65,7 @@ __all__ = [
     "plot_foretold",
     "plot_goals",
     "plot_grid_cells",
+    "plot_joint_reach",
     "plot_journeys",
     "plot_likeness",
     "plot_localisation",

@@ -8,11 +8,12 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
-from arena import Arena
+from arena import Arena, Arm
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array
 
@@ -59,15 +60,39 @@ def prm_paths(
     Şucan, Moll & Kavraki (2012), The Open Motion Planning Library.
     """
     check_array("pairs", pairs.reshape(-1, 3), (None, 3))
+    return _asked(arena, pairs, patience, radius=radius, milestones=milestones, seed=seed)
+
+
+def prm_joint_paths(
+    arena: Arena,
+    pairs: Float[np.ndarray, "pairs 2 joints"],
+    *,
+    arm: Arm,
+    milestones: int,
+    seed: int = 0,
+    patience: float = 600.0,
+) -> list[Float[np.ndarray, "_ joints"] | None] | None:
+    """Plan over the joints of an arm without limits, edges checked at 1°; the rest as `prm_paths` does.
+
+    Parameters
+    ----------
+    arena, arm
+        The room, and what must touch nothing in it.
+    pairs
+        Postures (start, goal), rad.
+    milestones, seed, patience
+        See `prm_paths`.
+    """
+    check_array("pairs", pairs.reshape(-1, pairs.shape[-1]), (None, len(arm.axes)))
+    return _asked(arena, pairs, patience, arm=arm.model_dump(), milestones=milestones, seed=seed)
+
+
+def _asked(
+    arena: Arena, pairs: Float[np.ndarray, "pairs 2 axes"], patience: float, **order: Any
+) -> list[Float[np.ndarray, "_ axes"] | None] | None:
     if importlib.util.find_spec("ompl") is None:
         return None
-    order = {
-        "arena": arena.to_toml(),
-        "pairs": pairs.tolist(),
-        "radius": radius,
-        "milestones": milestones,
-        "seed": seed,
-    }
+    order |= {"arena": arena.to_toml(), "pairs": pairs.tolist()}
     with tempfile.TemporaryDirectory() as folder:
         request, response = Path(folder) / "asked.json", Path(folder) / "answered.json"
         request.write_text(json.dumps(order), encoding="utf-8")

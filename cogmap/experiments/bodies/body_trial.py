@@ -24,7 +24,7 @@ from cogmap.evaluation.joints import (
     windings,
 )
 from cogmap.experiments import Conditions, Result
-from cogmap.features.image_codes import image_codes
+from cogmap.features.image_codes import sharp_codes
 from cogmap.navigation import Localiser
 from cogmap.plots import plot_barcodes, plot_coordinates
 
@@ -88,7 +88,7 @@ class BodyTrial:
     @cached_property
     def located(self) -> Float[np.ndarray, "fresh joints"]:
         """Errors (rad, m) of joints that a `Localiser` reads for the fresh views from those that are kept."""
-        known, seen = (_sharp(part.views) for part in (self.kept, self.fresh))
+        known, seen = (sharp_codes(part.views) for part in (self.kept, self.fresh))
         codes = self.coordinates.encode(self.fresh.views)
         localiser = Localiser(
             self.coordinates.codes_, codes=known, neighbours=15, ridge=1e-3, metric="euclidean"
@@ -153,9 +153,3 @@ class BodyTrial:
                 "coordinates": "Views laid out by the coordinates found in them, and the true joints there"
             },
         )
-
-
-def _sharp(views: Any) -> Float[np.ndarray, "views features"]:
-    """Code views so finely that they tell small steps between views which are known to be near."""
-    height, width = views.shape[1:3]
-    return image_codes(views, width=width // 2, height=min(height, width // 2))

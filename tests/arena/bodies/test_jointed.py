@@ -27,6 +27,13 @@ def test_motors_are_weak_and_slip_as_told() -> None:
     np.testing.assert_allclose(stepped(Arm(slip=0.05), [1.0, 1.0], 3), 0.1 * (1 + 0.05 * noise))
 
 
+def test_nobody_slips_when_nobody_goes() -> None:
+    at_large = Arm(slip=0.05).at_large(OPEN, 1)
+    at_large.begin(ONE, np.array([[0.5, 1.0]]))
+    at_large.step(ONE[:0], np.empty((0, 2)), 0.1, [])
+    np.testing.assert_array_equal(at_large.configurations, [[0.5, 1.0]])
+
+
 def test_commands_are_shares_of_what_motors_can_do() -> None:
     np.testing.assert_allclose(Arm(max_turn=2.0).velocities(np.array([[0.5, -7.0]])), [[1.0, -2.0]])
 
