@@ -115,7 +115,8 @@ class PostureReaching:
         left = far * ways.costs[sight.indices] + np.take_along_axis(self._left[live], sight.indices, axis=1)
         left[far < STEP * pace] = np.inf
         rows, best = np.arange(len(live)), left.argmin(axis=1)
-        work, left = sight.work[rows, best], left[rows, best]
+        work: np.ndarray = sight.work[rows, best]
+        left = left[rows, best]
         # Whoever is here and has farther to go than was thought remembers it (learning real-time A*).
         here = (far < STEP * pace) & np.isfinite(left)[:, None]
         toll = np.where(here, far * ways.costs[sight.indices], np.inf)
@@ -169,7 +170,7 @@ class PostureReaching:
         nearer = left < self._best[live] - CLOSE * pace
         self._best[live] = np.where(nearer, left, self._best[live])
         self._stale[live] = np.where(nearer, 0, self._stale[live] + 1)
-        kicked = self._stale[live] >= STALLED
+        kicked: np.ndarray = self._stale[live] >= STALLED
         self._kicks[live] += kicked
         self._stale[live[kicked]] = 0
         # from where it is kicked to it comes nearer anew

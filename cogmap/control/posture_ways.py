@@ -94,7 +94,8 @@ class PostureWays:
             (sight.effort[known], (known.nonzero()[0], sight.indices[known])), shape=(goals, kept)
         )
         # A goal is left, never passed.
-        joined = sp.csr_array(sp.block_array([[self.graph, None], [ends, sp.csr_array((goals, goals))]]))
+        onwards = sp.hstack([self.graph, sp.csr_array((kept, goals))])
+        joined = sp.csr_array(sp.vstack([onwards, sp.hstack([ends, sp.csr_array((goals, goals))])]))
         left: np.ndarray = dijkstra(joined, indices=np.arange(kept, kept + goals))[:, :kept]
         return left
 
