@@ -213,8 +213,7 @@ class Imagination:
         if len(doubtful):
             seen = np.stack([views[view] for view in doubtful])
             there = Seen(*(part[doubtful] for part in there))
-            poses[doubtful], there = self._aligned(seen, poses[doubtful], there, None)
-            pixels[doubtful] = there.unusual
+            poses[doubtful], pixels[doubtful] = self._judged(seen, poses[doubtful], there, None)
         return Surprise(
             pixels=pixels,
             position=poses[:, :2],
@@ -239,8 +238,8 @@ class Imagination:
         chosen = places.sample
         views = np.stack([places.views[view] for view in chosen])
         poses = np.column_stack([places.position[chosen], places.phase[chosen]])
-        there = self._aligned(views, poses, self._seen(views, poses, chosen), chosen)[1]
-        return float(2.25 * np.percentile(there.unusual.max(axis=(1, 2)), 99))
+        pixels = self._judged(views, poses, self._seen(views, poses, chosen), chosen)[1]
+        return float(2.25 * np.percentile(pixels.max(axis=(1, 2)), 99))
 
     @cached_property
     def places(self) -> RememberedPlaces:
@@ -352,14 +351,34 @@ class Imagination:
         reach = np.array([self.places.spacing / 2, self.places.spacing / 2, 0.01])
         return aligned(seen, poses, there, fine=fine, quick=quick, reach=reach)
 
+    def _judged(
+        self,
+        views: Any,
+        poses: Float[np.ndarray, "views 3"],
+        there: Seen,
+        without: Int[np.ndarray, "views"] | None,
+    ) -> tuple[Float[np.ndarray, "views 3"], Float32[np.ndarray, "views height width"]]:
+        """Correct poses, and tell what is unusual there however it is imagined.
+
+        Flow goes wrong beside a box, but from two places hardly at the same pixels.
+        """
+        poses, there = self._aligned(views, poses, there, without)
+        again = self._seen(views, poses, without, again=True)
+        return poses, np.minimum(there.unusual, again.unusual)
+
     def _seen(
-        self, views: Any, poses: Float[np.ndarray, "views 3"], without: Int[np.ndarray, "views"] | None
+        self,
+        views: Any,
+        poses: Float[np.ndarray, "views 3"],
+        without: Int[np.ndarray, "views"] | None,
+        *,
+        again: bool = False,
     ) -> Seen:
-        """Imagine what views show at their poses, and compare."""
+        """Imagine what views show at their poses, and compare; `again`, by flow from the second source."""
         sources = self.places.sources(poses[:, :2], self.sources, without=without)
-        nearest = self.places.sources(poses[:, :2], 1, without=without)
+        sources = sources.second_first() if again else sources
         dreamt = self._painter(sources, poses[:, 2], "warp")
-        turned = self._painter(nearest, poses[:, 2], "turned")
+        turned = self._painter(sources.alone(), poses[:, 2], "turned")
 
         def compared(view: int) -> tuple[Float32[np.ndarray, "pixels"], Float32[np.ndarray, "height width"]]:
             painted = dreamt(view)

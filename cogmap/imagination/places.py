@@ -37,6 +37,17 @@ class Sources(NamedTuple):
     near: Float32[np.ndarray, "targets sources"]
     """They sum to one and fall with distance, for mixing what should be equal; 0 where there are no more."""
 
+    def alone(self) -> Sources:
+        """Give the first alone."""
+        ones = np.ones_like(self.affine[:, :1])
+        return Sources(self.indices[:, :1], self.distances[:, :1], ones, ones)
+
+    def second_first(self) -> Sources:
+        """Give the same with the second before the first."""
+        order = np.arange(self.indices.shape[1])
+        order[:2] = order[:2][::-1]
+        return Sources(*(part[:, order] for part in self))
+
 
 @dataclass(frozen=True, eq=False)
 class RememberedPlaces:

@@ -43,6 +43,16 @@ def test_the_visit_of_an_imagined_view_is_left_out() -> None:
     assert (np.abs(found.indices - asked[:, None]) > VISIT).all()
 
 
+def test_the_second_source_comes_first_and_the_first_stands_alone() -> None:
+    found = _places(np.random.default_rng(0).uniform(size=(90, 2))).sources(np.full((2, 2), 0.5), 4)
+    for before, after in zip(found, found.second_first(), strict=True):
+        np.testing.assert_array_equal(after, before[:, [1, 0, 2, 3]])
+    alone = found.alone()
+    np.testing.assert_array_equal(alone.indices, found.indices[:, :1])
+    assert (alone.near == 1).all()
+    assert (alone.affine == 1).all()
+
+
 def test_turning_on_the_spot_brings_places_no_closer() -> None:
     rng = np.random.default_rng(0)
     visited = rng.uniform(size=(1000, 2))
