@@ -10,7 +10,7 @@ from cogmap.experiments.registry import run_experiment
 def test_dreams_are_measured_beside_what_is_seen(
     dreamer: Dreamer, room: Arena, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(imagination, "TARGETS", 10)
+    monkeypatch.setattr(imagination, "TARGETS", 30)
     monkeypatch.setattr(imagination, "WAYS", 1)
     # few frames: four times as far from one to the next
     monkeypatch.setitem(dreamer.imagination.__dict__, "pace", 4 * dreamer.imagination.pace)
@@ -19,7 +19,7 @@ def test_dreams_are_measured_beside_what_is_seen(
     medians = table.groupby("method")["psnr_db"].median()
     peers = {"mean view", "nearest by true pose", "warp, from outside"}
     assert set(medians.index) == {*imagination.METHODS, *peers}
-    assert table["method"].value_counts().eq(10).all()
+    assert table["method"].value_counts().eq(30).all()
     assert figures["psnr_median_db"] == medians["warp"] > medians["turned"] > medians["mean view"]
     assert figures["decoder_psnr_db"] == medians["decoder"] > medians["mean view"] + 2
     assert figures["psnr_p05_db"] < figures["psnr_median_db"]
