@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterator
-from pathlib import Path
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
 from tests.guards import described, too_near
-from tests.steps import check_steps
 
 LONGEST = (
     "test_running", "test_merging", "atlas/test_metric_map", "shape/test_homology", "test_isomap",
@@ -33,13 +31,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return min((ranks[name] for name in LONGEST if item.path.match(f"{name}.py")), default=len(ranks))
 
     items.sort(key=rank)
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
-    """Check types at each step of a walk in tests of the arena alone."""
-    check_steps(checked=item.path.is_relative_to(Path(__file__).parent / "arena"))
-    return (yield)
 
 
 @pytest.fixture(scope="session", autouse=True)

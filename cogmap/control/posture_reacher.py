@@ -43,7 +43,7 @@ class PostureReacher:
     Raises
     ------
     CogmapError
-        For arrays that do not fit, and too few views.
+        At first use: for arrays that do not fit, and too few views.
     """
 
     encode: Callable[[Any], Float[np.ndarray, "views features"]]

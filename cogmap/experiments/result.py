@@ -39,6 +39,15 @@ class Result:
     """What each figure shows, for those who read it and for those who cannot see it; the usual ones may be
     left out."""
 
+    def joined(self, other: Result) -> Result:
+        """Add what another tells, which goes before where both tell the same."""
+        return Result(
+            {**self.metrics, **other.metrics},
+            {**self.tables, **other.tables},
+            {**self.figures, **other.figures},
+            {**self.captions, **other.captions},
+        )
+
     def described(self, about: dict[str, Any]) -> Result:
         """Put before the metrics what they are of, and give figures without a caption the usual one."""
         known = USUAL_CAPTIONS | self.captions

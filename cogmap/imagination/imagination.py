@@ -2,33 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, replace
 from functools import cached_property
 from typing import Any, Literal, Protocol, get_args, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float, Float32, Int, UInt8
+from jaxtyping import Float, Float32, UInt8
 from numpy.typing import ArrayLike
 
 from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
-from cogmap.imagination.alignment import Seen, aligned, coarse
+from cogmap.imagination.alignment import Seen
+from cogmap.imagination.comparison import Comparison
 from cogmap.imagination.decoder import ChartDecoder
-from cogmap.imagination.places import RememberedPlaces, Sources
+from cogmap.imagination.painter import Painter, Turned
+from cogmap.imagination.places import RememberedPlaces
 from cogmap.imagination.stroll import stroll
-from cogmap.imagination.surprise import Surprise, unusual
-from cogmap.imagination.turning import Painted, blended, columns_turned
-from cogmap.imagination.warp import warped
+from cogmap.imagination.surprise import Surprise
 from cogmap.inputs import check_array, check_choice, check_views, checked_count
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.even_memory import EvenMemory
 from cogmap.map.novelty import check_known
 from cogmap.navigation.place_graph import PlaceGraph
-from cogmap.threads import in_order, one_thread
 
-Turned = Literal["turned", "blend", "warp"]
 Method = Literal["decoder", Turned]
 """How a view is made.
 
@@ -126,7 +123,7 @@ class Imagination:
         if method == "decoder":
             found = list(self.decoder.paint(np.column_stack([where, phase])))
         else:
-            found = list(self.paint(sources, phase, method=method))
+            found = list(self._painter.paint(sources, phase, method))
         return Dream(
             views=np.stack([as_pixels(each.view) for each in found]),
             position=where,
@@ -206,14 +203,15 @@ class Imagination:
         all but the visits on which these were seen.
         """
         poses = self._poses(views)
-        there = self._seen(views, poses, None)
+        compared = self._comparison
+        there = compared.seen(views, poses)
         pixels = there.unusual
         # aligning takes four times as long as all else: only where something may have changed
         doubtful = np.flatnonzero(pixels.max(axis=(1, 2)) > self.threshold / 2)
         if len(doubtful):
             seen = np.stack([views[view] for view in doubtful])
             there = Seen(*(part[doubtful] for part in there))
-            poses[doubtful], pixels[doubtful] = self._judged(seen, poses[doubtful], there, None)
+            poses[doubtful], pixels[doubtful] = compared.judged(seen, poses[doubtful], there)
         return Surprise(
             pixels=pixels,
             position=poses[:, :2],
@@ -228,8 +226,8 @@ class Imagination:
         Unlike `perceive` it looks at every pixel and mistrusts those that do not fit, so it holds when a
         thing was moved; it takes thirty times as long.
         """
-        poses = self._poses(views)
-        return self._aligned(views, poses, self._seen(views, poses, None), None)[0]
+        poses, compared = self._poses(views), self._comparison
+        return compared.aligned(views, poses, compared.seen(views, poses))[0]
 
     @cached_property
     def threshold(self) -> float:
@@ -238,7 +236,8 @@ class Imagination:
         chosen = places.sample
         views = np.stack([places.views[view] for view in chosen])
         poses = np.column_stack([places.position[chosen], places.phase[chosen]])
-        pixels = self._judged(views, poses, self._seen(views, poses, chosen), chosen)[1]
+        compared = replace(self._comparison, without=chosen)
+        pixels = compared.judged(views, poses, compared.seen(views, poses))[1]
         return float(2.25 * np.percentile(pixels.max(axis=(1, 2)), 99))
 
     @cached_property
@@ -296,27 +295,15 @@ class Imagination:
         check_known(activity, "view")
         return activity.position.astype(np.float64), activity.phase.astype(np.float64)
 
-    def paint(
-        self, sources: Sources, phase: Float[np.ndarray, "targets"], *, method: Turned = "warp"
-    ) -> Iterator[Painted]:
-        """Make views from their sources, one after the other, in threads."""
-        with one_thread():
-            yield from in_order(self._painter(sources, phase, method), range(len(phase)))
+    @property
+    def _painter(self) -> Painter:
+        """What makes views."""
+        return Painter(self.places, self.sense)
 
-    def _painter(
-        self, sources: Sources, phase: Float[np.ndarray, "targets"], method: Turned
-    ) -> Callable[[int], Painted]:
-        """Give what makes the view of a target."""
-        places = self.places
-        turn = self.sense * (phase[:, None] - places.phase[sources.indices])
-        shifts = columns_turned(turn, places.views.shape[2])
-        paint = warped if method == "warp" else blended
-
-        def painted(target: int) -> Painted:
-            views = np.stack([places.views[view] for view in sources.indices[target]])
-            return paint(views, shifts[target], sources.affine[target], sources.near[target])
-
-        return painted
+    @property
+    def _comparison(self) -> Comparison:
+        """What compares views with what is imagined where they were taken."""
+        return Comparison(self._painter, self.sources)
 
     def _poses(self, views: Any) -> Float[np.ndarray, "views 3"]:
         check_views(views, self.cmap.view_shape_)
@@ -332,61 +319,6 @@ class Imagination:
                 f"this map tells no positions, so nothing is imagined: {self.cmap.metric_reason_}"
             )
         return activity
-
-    def _aligned(
-        self,
-        views: Any,
-        poses: Float[np.ndarray, "views 3"],
-        there: Seen,
-        without: Int[np.ndarray, "views"] | None,
-    ) -> tuple[Float[np.ndarray, "views 3"], Seen]:
-        def fine(where: Float[np.ndarray, "views 3"]) -> Seen:
-            return self._seen(views, where, without)
-
-        def quick(where: Float[np.ndarray, "views 3"]) -> Float32[np.ndarray, "views pixels"]:
-            sources = self.places.sources(where[:, :2], self.sources, without=without)
-            return np.stack([coarse(each.view) for each in self.paint(sources, where[:, 2], method="blend")])
-
-        seen = np.stack([coarse(view) for view in views])
-        reach = np.array([self.places.spacing / 2, self.places.spacing / 2, 0.01])
-        return aligned(seen, poses, there, fine=fine, quick=quick, reach=reach)
-
-    def _judged(
-        self,
-        views: Any,
-        poses: Float[np.ndarray, "views 3"],
-        there: Seen,
-        without: Int[np.ndarray, "views"] | None,
-    ) -> tuple[Float[np.ndarray, "views 3"], Float32[np.ndarray, "views height width"]]:
-        """Correct poses, and tell what is unusual there however it is imagined.
-
-        Flow goes wrong beside a box, but from two places hardly at the same pixels.
-        """
-        poses, there = self._aligned(views, poses, there, without)
-        again = self._seen(views, poses, without, again=True)
-        return poses, np.minimum(there.unusual, again.unusual)
-
-    def _seen(
-        self,
-        views: Any,
-        poses: Float[np.ndarray, "views 3"],
-        without: Int[np.ndarray, "views"] | None,
-        *,
-        again: bool = False,
-    ) -> Seen:
-        """Imagine what views show at their poses, and compare; `again`, by flow from the second source."""
-        sources = self.places.sources(poses[:, :2], self.sources, without=without)
-        sources = sources.second_first() if again else sources
-        dreamt = self._painter(sources, poses[:, 2], "warp")
-        turned = self._painter(sources.alone(), poses[:, 2], "turned")
-
-        def compared(view: int) -> tuple[Float32[np.ndarray, "pixels"], Float32[np.ndarray, "height width"]]:
-            painted = dreamt(view)
-            return coarse(painted.view), unusual(views[view], painted, turned(view).view)
-
-        with one_thread():
-            found = list(in_order(compared, range(len(poses))))
-        return Seen(*map(np.stack, zip(*found, strict=True)))
 
     def _walked(
         self, route: Float[np.ndarray, "points 2"], step: float | None, start: float | None, end: float | None

@@ -1,7 +1,5 @@
 """An arm with an eye on its hand."""
 
-from dataclasses import replace
-
 from arena import Arm, Camera
 from cogmap.experiments import Conditions, Result, experiment
 from cogmap.experiments.bodies.body_trial import BodyTrial
@@ -14,11 +12,5 @@ def arm(conditions: Conditions) -> Result:
     """Two joints from what their hand sees: a torus, a cylinder or a disc, by how many have limits."""
     eye = Camera.panoramic(90, 15, noise=0.01)
     trial = BodyTrial.of(conditions, Arm(), eye)
-    result, reached = trial.result("arm"), joint_reaching(trial, conditions, eye)
-    return replace(
-        result,
-        metrics={**result.metrics, **shoulder_split(trial, conditions.seed), **reached.metrics},
-        tables={**result.tables, **reached.tables},
-        figures={**result.figures, **reached.figures},
-        captions={**result.captions, **reached.captions},
-    )
+    result = trial.result("arm").joined(Result(shoulder_split(trial, conditions.seed)))
+    return result.joined(joint_reaching(trial, conditions, eye))

@@ -20,7 +20,7 @@ from cogmap.control import Outcome, PostureReacher
 from cogmap.coordinates.view_code import ViewCode
 from cogmap.evaluation.joint_ways import joint_length, shortest_joint_ways, ways_are_free
 from cogmap.evaluation.peers.prm import prm_joint_paths
-from cogmap.experiments import Conditions
+from cogmap.experiments import Conditions, Result
 from cogmap.experiments.bodies.body_trial import BodyTrial
 from cogmap.plots import plot_joint_reach
 
@@ -44,33 +44,24 @@ OBSTACLES = (
 """Around a base in the middle of the room."""
 
 
-class JointReaching(NamedTuple):
-    """What came of it; nothing for a body other than an arm of two links without limits."""
-
-    metrics: dict[str, Any]
-    tables: dict[str, pd.DataFrame]
-    figures: dict[str, Figure]
-    captions: dict[str, str]
-
-
 class _Journeys(NamedTuple):
     gone: Journeys
     goals: Recording
     table: pd.DataFrame
 
 
-def joint_reaching(trial: BodyTrial, conditions: Conditions, eye: AnyEye) -> JointReaching:
+def joint_reaching(trial: BodyTrial, conditions: Conditions, eye: AnyEye) -> Result:
     """Show an arm 100 images of fresh postures, and let its motors bring it there by what babbling taught.
 
     Within 1° or half of it is who ends with both joints so near. Ways are in joint space, over the shortest.
     `obstacles_`: among three boxes, where the arm babbled too; `ways_found` and `ways_touching` are the
     shares of these that begin and that something stops, `prm_` those of OMPL's roadmap of as many postures,
     which knows the room and checks its edges at 1°. `slip_`: motors slip by 5 %; `weak_`: one turns 70 % as
-    far as told; each babbled anew.
+    far as told; each babbled anew. Nothing for another body than an arm of two links without limits.
     """
     body = trial.body
     if not isinstance(body, Arm) or [axis.kind for axis in body.axes] != ["circle", "circle"]:
-        return JointReaching({}, {}, {}, {})
+        return Result({})
     eye, seed, room = conditions.camera or eye, conditions.seed, conditions.room
     among = room.model_copy(update={"boxes": (*room.boxes, *OBSTACLES)})
     found = {"": _reach(conditions, body, eye, (trial.walk, trial.fresh), trial.coordinates.encode)}
@@ -88,7 +79,7 @@ def joint_reaching(trial: BodyTrial, conditions: Conditions, eye: AnyEye) -> Joi
     metrics |= {"ways_found": float(tried.mean()), "ways_touching": float(hindered.table["touched"].mean())}
     metrics |= _peer(among, body, hindered, len(trial.kept), seed)
     tables = [part.table.assign(condition=name.removesuffix("_") or "free") for name, part in found.items()]
-    return JointReaching(
+    return Result(
         metrics,
         {"reaching": pd.concat(tables, ignore_index=True)},
         {"reach": _film(among, body, eye, hindered)},

@@ -1,7 +1,5 @@
 """An arm before a fixed eye."""
 
-from dataclasses import replace
-
 from arena import Arm, Overhead
 from cogmap.experiments import Conditions, Result, experiment
 from cogmap.experiments.bodies.body_trial import BodyTrial
@@ -14,11 +12,5 @@ def watched_arm(conditions: Conditions) -> Result:
     """Two joints of an arm that is watched from above: a body that is seen, not felt."""
     eye = Overhead(64, 64, noise=0.01)
     trial = BodyTrial.of(conditions, Arm(), eye)
-    result, reached = trial.result("watched arm"), joint_reaching(trial, conditions, eye)
-    return replace(
-        result,
-        metrics={**result.metrics, **shoulder_split(trial, conditions.seed), **reached.metrics},
-        tables={**result.tables, **reached.tables},
-        figures={**result.figures, **reached.figures},
-        captions={**result.captions, **reached.captions},
-    )
+    result = trial.result("watched arm").joined(Result(shoulder_split(trial, conditions.seed)))
+    return result.joined(joint_reaching(trial, conditions, eye))

@@ -36,3 +36,13 @@ def test_described_it_tells_what_it_is_of_and_has_the_usual_captions() -> None:
         ("room", USUAL_CAPTIONS["room"]),
         ("barcodes", "Bars of a spin"),
     ]
+
+
+def test_results_are_joined_and_the_second_goes_first() -> None:
+    line, dot = new_figure(1.0, 1.0), new_figure(1.0, 1.0)
+    one = Result({"views": 2, "r2": 0.5}, {"a": pd.DataFrame()}, {"line": line}, {"line": "A line"})
+    both = one.joined(Result({"r2": 0.7}, {"b": pd.DataFrame()}, {"dot": dot}, {"line": "The line"}))
+    assert both.metrics == {"views": 2, "r2": 0.7}
+    assert list(both.tables) == ["a", "b"]
+    assert both.figures == {"line": line, "dot": dot}
+    assert both.captions == {"line": "The line"}

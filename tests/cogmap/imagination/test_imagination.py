@@ -1,6 +1,5 @@
 import re
 from copy import copy
-from typing import Any
 
 import numpy as np
 import pytest
@@ -9,7 +8,6 @@ from arena import Arena, Camera
 from cogmap import CogmapError, EvenMemory
 from cogmap.evaluation.image_quality import psnr
 from cogmap.imagination import Imagination
-from cogmap.imagination.alignment import Seen
 
 
 def test_dreams_are_like_what_is_seen_and_the_finer_the_method_the_more(
@@ -125,25 +123,6 @@ def test_a_moved_box_surprises_where_it_stood_or_stands(
     assert abs(np.angle(seen / true)) < 0.1
     with pytest.raises(CogmapError, match="nothing surprises"):
         usual.plan()
-
-
-def test_what_only_one_of_two_dreams_gets_wrong_does_not_surprise(
-    dream: Imagination, remembered: tuple[np.ndarray, np.ndarray], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    plain, asked = Imagination._seen, []
-
-    def seen(self: Imagination, *told: Any, again: bool = False) -> Seen:
-        found = plain(self, *told, again=again)
-        asked.append(again)
-        if not again:
-            found.unusual[:, 5, 5] += 50
-        return found
-
-    monkeypatch.setattr(Imagination, "_seen", seen)
-    waking = Imagination(dream.cmap, memory=dream.memory)
-    waking.__dict__["threshold"] = 40.0
-    assert not waking.surprise(remembered[0][-6:]).alarms.any()
-    assert any(asked)
 
 
 def test_recognising_corrects_a_wrong_percept(

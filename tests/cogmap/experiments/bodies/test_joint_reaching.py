@@ -5,7 +5,7 @@ from arena import Arena, Arm, Babble, Body, Camera, Rail, explore
 from arena.acting import Journeys
 from cogmap.control import Outcome
 from cogmap.coordinates import GeneralisedCoordinates
-from cogmap.experiments import Conditions
+from cogmap.experiments import Conditions, Result
 from cogmap.experiments.bodies.body_trial import BodyTrial
 from cogmap.experiments.bodies.joint_reaching import OBSTACLES, _scored, _summary, joint_reaching
 
@@ -18,7 +18,7 @@ def test_other_bodies_than_an_arm_of_two_free_links_are_left_out(body: Body) -> 
     walk = explore(ROOM, Babble(), eye, body=body, views=3, seed=0)
     trial = BodyTrial(body, walk, walk, GeneralisedCoordinates())
     found = joint_reaching(trial, Conditions(ROOM, 100), eye)
-    assert found == ({}, {}, {}, {})
+    assert found == Result({})
 
 
 def test_ends_are_off_around_the_circle_and_ways_over_the_shortest() -> None:
