@@ -231,14 +231,14 @@ class Imagination:
 
     @cached_property
     def threshold(self) -> float:
-        """Above what surprises where nothing has changed: 2.25 times what one view in 100 reaches."""
+        """Above what surprises where nothing has changed: three times what one view in 100 reaches."""
         places = self.places
         chosen = places.sample
         views = np.stack([places.views[view] for view in chosen])
         poses = np.column_stack([places.position[chosen], places.phase[chosen]])
         compared = replace(self._comparison, without=chosen)
         pixels = compared.judged(views, poses, compared.seen(views, poses))[1]
-        return float(2.25 * np.percentile(pixels.max(axis=(1, 2)), 99))
+        return float(3 * np.percentile(pixels.max(axis=(1, 2)), 99))
 
     @cached_property
     def places(self) -> RememberedPlaces:
