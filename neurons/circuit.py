@@ -1,5 +1,7 @@
 """The circuit: all layers, and the way of a view through them."""
 
+from math import isnan
+
 import torch
 from jaxtyping import Float
 from torch import Tensor, nn
@@ -8,7 +10,8 @@ from neurons.atlas.atlas import Atlas
 from neurons.atlas.metric_map import MetricMap
 from neurons.guard import Guard
 from neurons.layers.afferents import Afferents
-from neurons.layers.charts import Charts
+from neurons.layers.charts import FIRST_TANGENTS, TANGENTS, Charts
+from neurons.layers.dimension import dimension_votes
 from neurons.layers.heading_cells import HeadDirectionCells
 from neurons.layers.olfaction import Olfaction
 from neurons.layers.place_cells import PlaceCells
@@ -31,6 +34,8 @@ class Circuit(nn.Module):
         Draws the initial weights, on the processor; `to` takes the layers to another device, to learn there.
     smell
         κ, how much smell counts beside sight where charts compete (`neurons.layers.charts.Charts`).
+    tangents
+        Of each chart, to begin with; how many lie along the manifold is learnt.
     guard
         Bounds of what is trusted; the usual ones unless told.
     """
@@ -47,20 +52,26 @@ class Circuit(nn.Module):
         heading_cells: int,
         generator: torch.Generator,
         smell: float = 0.5,
+        tangents: int = FIRST_TANGENTS,
         guard: Guard | None = None,
     ) -> None:
         super().__init__()
         self.most_charts = most_charts
         self.guard = guard or Guard()
         self.code = Sanger(features, components, generator=generator)
-        self.charts = Charts(charts, components, odorants, generator=generator, smell=smell)
-        self.olfaction = Olfaction(charts, odorants)
-        self.readout = Readout(charts, components, odorants)
+        self.charts = Charts(
+            charts, components, odorants, generator=generator, smell=smell, tangents=tangents
+        )
+        self.olfaction = Olfaction(charts, odorants, tangents)
+        self.readout = Readout(charts, components, odorants, tangents)
         self.place = PlaceCells(place_cells, charts, odorants)
         self.heading = HeadDirectionCells(heading_cells, charts, generator=generator)
         self.metric_map = MetricMap(place_cells, odorants)
         self.agreement: Tensor = nn.Buffer(torch.full((2,), torch.nan))
         self.connected: Tensor = nn.Buffer(torch.zeros((), dtype=torch.bool))
+        self.spectrum: Tensor = nn.Buffer(torch.full((min(TANGENTS, components),), torch.nan))
+        self.votes: Tensor = nn.Buffer(torch.full((len(self.spectrum) - 1,), torch.nan))
+        self.felt: Tensor = nn.Buffer(torch.full((), torch.nan))
         self.ambiguity: Tensor = nn.Buffer(torch.full((2,), torch.nan))
 
     def recall(
@@ -74,18 +85,39 @@ class Circuit(nn.Module):
         recalled: Recalled = self.readout(self.charts, codes, excited)
         return recalled
 
+    @property
+    def dimension(self) -> tuple[int, float]:
+        """Degrees of freedom that most charts tell, and the share of them that do; 0 and NaN before."""
+        vote = float(self.votes.max())
+        return (0, vote) if isnan(vote) else (int(self.votes.argmax()) + 1, vote)
+
     def atlas_diagnosis(self) -> str:
         """Say in what the charts do not agree, or nothing when they do."""
         signs, phases = self.agreement.tolist()
         return self.guard.atlas(signs, phases)
 
+    def widen_charts(self) -> None:
+        """Give each chart more tangents than the manifold may have dimensions, unless they have them."""
+        before = self.charts.dimensions
+        self.charts.widen()
+        if self.charts.dimensions > before:
+            self._stand_on_charts()
+
+    def cut_charts(self) -> None:
+        """Leave the charts as many tangents as most tell; where too few agree, as many as they began with."""
+        spectra = self.charts.spectra
+        if len(spectra):  # of views that are all the same nothing is told
+            self.spectrum, self.votes = spectra.median(dim=0).values, dimension_votes(spectra)
+        agreed = float(self.votes.max()) >= self.guard.least_vote
+        self.charts.cut(int(self.votes.argmax()) + 1 if agreed else FIRST_TANGENTS)
+        self._stand_on_charts()
+
     def add_charts(self) -> None:
         """Double the charts where they lie farthest apart; what stands on them is as before any view."""
-        count, (cells, odorants) = len(self.charts), self.place.centres.shape
+        count, cells = len(self.charts), len(self.place.centres)
         self.charts.grow(Atlas.of(self.charts.points).edges, min(count, self.most_charts - count))
-        count, components = self.charts.centres.shape
-        self.olfaction = Olfaction(count, odorants)
-        self.readout = Readout(count, components, odorants)
+        self._stand_on_charts()
+        count = len(self.charts)
         # place cells that have learnt before there were charts keep what they prefer
         self.place.branches = torch.ones(count, cells, dtype=torch.bool)
         self.place.afferents = Afferents(count, cells)
@@ -94,4 +126,15 @@ class Circuit(nn.Module):
         self.agreement.fill_(torch.nan)
         self.connected.zero_()
         self.ambiguity.fill_(torch.nan)
+        self.spectrum.fill_(torch.nan)
+        self.votes.fill_(torch.nan)
+        self.felt.fill_(torch.nan)
         self.to(self.agreement.device)  # where the layers are that these replace
+
+    def _stand_on_charts(self) -> None:
+        """Make what stands on the charts anew, of their number and tangents, as before any view."""
+        charts, tangents, components = self.charts.tangents.shape
+        odorants = self.place.centres.shape[1]
+        self.olfaction = Olfaction(charts, odorants, tangents)
+        self.readout = Readout(charts, components, odorants, tangents)
+        self.to(self.agreement.device)

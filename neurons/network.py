@@ -113,7 +113,17 @@ class Network(Circuit):
         ambiguous, aliased = self.ambiguity.tolist()
         views_per_chart = self.epoch / len(self.charts)
         connected = bool(self.connected)
-        return Agreement(signs, phases, connected, foretold, ambiguous, aliased, views_per_chart)
+        return Agreement(
+            signs,
+            phases,
+            connected,
+            foretold,
+            ambiguous,
+            aliased,
+            views_per_chart,
+            *self.dimension,
+            float(self.felt),
+        )
 
     def heading_diagnosis(self) -> str:
         """Say why headings cannot be trusted, or nothing when they can."""

@@ -160,21 +160,32 @@ class ChartStage(CodedStage):
     ----------
     winners
         Charts that learn from a view, at the beginning and at the end: many unfold the tiling, few refine it.
+    widened
+        From which progress on charts have more tangents than they may keep. Before, many learn from a view,
+        and what a chart learns spans more than its own neighbourhood.
     """
 
     name = "charts"
     epochs: int = 6
     winners: tuple[int, int] = (12, 4)
+    widened: float = 2 / 3
 
     def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:
         """Let the nearest charts learn, fewer and fewer, falling geometrically."""
-        first, last = self.winners
-        winners = round(float(first * (last / first) ** batch.progress))
+        if batch.progress > self.widened:
+            circuit.widen_charts()
+        winners = self.winners_at(batch.progress)
         circuit.charts.partial_fit(batch.seen, batch.log_odours, winners=winners, window=batch.window)
 
+    def winners_at(self, progress: float) -> int:
+        """How many charts learn from a view when so much of the stage is over."""
+        first, last = self.winners
+        return round(float(first * (last / first) ** progress))
+
     def finish(self, circuit: Circuit) -> None:
-        """Freeze the charts, and measure how far apart they lie."""
+        """Freeze the charts, leave them tangents along the manifold, and measure how far apart they lie."""
         circuit.charts.freeze()
+        circuit.cut_charts()
         circuit.readout.spacing = Atlas.of(circuit.charts.points).spacing
 
 
@@ -214,7 +225,8 @@ class OlfactionStage(CodedStage):
     def _orient(self, circuit: Circuit) -> None:
         atlas = Atlas.of(circuit.charts.points)
         intercepts, jacobians = circuit.olfaction.solve()
-        axes = heading_axes(circuit.charts.tangents, jacobians, atlas)
+        axes, felt = heading_axes(circuit.charts.tangents, jacobians, atlas)
+        circuit.felt.fill_(felt)
         compass = None
         with suppress(NeuronsError):  # no ring closes: `agreement` stays NaN, which `diagnosis` tells
             compass = synchronise(circuit.charts.centres, axes, atlas)

@@ -50,7 +50,7 @@ def guards(request: pytest.FixtureRequest) -> Iterator[list[str]]:
     near: list[str] = []
     asked = {
         "atlas_diagnosis": ("signs", "phases"),
-        "heading_diagnosis": ("signs", "phases", "metric"),
+        "heading_diagnosis": ("signs", "phases", "metric", "vote"),
         "metric_diagnosis": ("metric",),
     }
     with pytest.MonkeyPatch.context() as patch:

@@ -353,6 +353,21 @@ class CognitiveMap:
         """How well the charts agree on phase, 1 at best; NaN before they have tried."""
         return float(self._grown.agreement[1])
 
+    @property
+    def dimension_(self) -> int:
+        """Degrees of freedom, of which most charts see so many; 0 before they have learnt."""
+        return self._grown.dimension[0]
+
+    @property
+    def vote_(self) -> float:
+        """Share of the charts that tell so many degrees of freedom; NaN before they have learnt."""
+        return self._grown.dimension[1]
+
+    @property
+    def spectrum_(self) -> Float[np.ndarray, "directions"]:
+        """Shares of what a chart sees along its tangents, before those are cut to `dimension_`; medians."""
+        return self._grown.spectrum.cpu().numpy()
+
     def state_dict(self) -> dict[str, Tensor]:
         """Give all that it has learnt, by the names it is saved under; as in PyTorch, not a copy."""
         return self._grown.state_dict()
@@ -371,6 +386,7 @@ class CognitiveMap:
             "odorants": self.odorants_,
             "epoch": network.epoch,
             "charts": len(network.charts),
+            "tangents": network.charts.dimensions,
         }
         settings = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "device"}
         weights = network.state_dict()
@@ -396,6 +412,7 @@ class CognitiveMap:
                 learnt["odorants"],
                 epoch=learnt["epoch"],
                 charts=learnt["charts"],
+                tangents=learnt["tangents"],
             )
             relaxed = {
                 name.removeprefix(RELAXED): weights.pop(name).numpy()
@@ -411,9 +428,7 @@ class CognitiveMap:
             raise CogmapError(f"{path} does not hold a whole map: {error}") from None
         return loaded
 
-    def _begin(
-        self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, charts: int | None = None
-    ) -> None:
+    def _begin(self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, **grown: int) -> None:
         first = checked_count("charts", self.charts)
         most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
         if not 0 <= self.smell < np.inf:
@@ -428,9 +443,8 @@ class CognitiveMap:
             self._network = Network(
                 self._retina.features,
                 odorants,
-                charts=first if charts is None else charts,
                 most_charts=most,
-                components=checked_count("components", self.components, 3),
+                components=checked_count("components", self.components, 4),
                 place_cells=checked_count("place_cells", self.place_cells),
                 heading_cells=checked_count("heading_cells", self.heading_cells),
                 smell=self.smell,
@@ -438,6 +452,7 @@ class CognitiveMap:
                 stages=SMELL_FIRST if self.smell_first else STAGES,
                 # drawn on the processor: the same initial weights on every device
                 generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
+                **{"charts": first} | grown,
             ).to(self._device)
 
     @property

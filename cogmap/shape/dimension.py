@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+import torch
 from jaxtyping import Float
 from scipy.spatial import KDTree
 
@@ -11,10 +12,7 @@ from cogmap.graph.knn import nearest_points
 from cogmap.graph.points import checked_cloud
 from cogmap.inputs import checked_count
 from cogmap.threads import one_thread
-
-FLOOR = 1e-3
-"""Share of a neighbourhood's variance below which no direction counts: curvature and noise, however they
-compare."""
+from neurons.layers.dimension import dimension_votes
 
 
 class LocalDimension(NamedTuple):
@@ -32,9 +30,9 @@ def local_dimension(
 ) -> LocalDimension:
     """Find the dimension of the manifold that points lie on, by principal components of neighbourhoods.
 
-    The variances λ₁ ≥ λ₂ ≥ … of a point and its nearest others fall most, by the ratio λᵢ / λᵢ₊₁, where the
-    directions along the manifold end and those of curvature and noise begin. The dimension is what most
-    points say; unlike the estimate of `intrinsic_dimension` it is a whole number, with a vote.
+    The variances of a point and its nearest others fall most where the directions along the manifold end and
+    those of curvature and noise begin (`neurons.layers.dimension`). The dimension is what most points
+    say; unlike the estimate of `intrinsic_dimension` it is a whole number, with a vote.
 
     Parameters
     ----------
@@ -50,10 +48,6 @@ def local_dimension(
     ------
     CogmapError
         For points that are not finite, and for too few of them.
-
-    References
-    ----------
-    Fukunaga & Olsen (1971), An algorithm for finding intrinsic dimensionality of data. IEEE Trans. Comput.
     """
     points = np.asarray(checked_cloud(X))
     most = min(
@@ -67,8 +61,7 @@ def local_dimension(
             around -= around.mean(axis=1, keepdims=True)
             variances = np.square(np.linalg.svd(around, compute_uv=False))
             shares[block] = (variances / variances.sum(axis=1, keepdims=True))[:, : most + 1]
-    counted = np.maximum(shares, FLOOR)
-    votes = np.bincount((counted[:, :-1] / counted[:, 1:]).argmax(axis=1), minlength=most) / len(points)
+        votes = dimension_votes(torch.from_numpy(shares)).numpy()
     return LocalDimension(int(votes.argmax()) + 1, float(votes.max()), np.median(shares, axis=0))
 
 

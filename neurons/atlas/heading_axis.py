@@ -1,5 +1,7 @@
 """The heading axis of each chart: the direction along which smell does not change, turning on the spot."""
 
+from typing import NamedTuple
+
 import torch
 from jaxtyping import Float
 from torch import Tensor
@@ -7,11 +9,21 @@ from torch import Tensor
 from neurons.atlas.atlas import Atlas
 
 
+class HeadingAxes(NamedTuple):
+    """Directions in which charts smell no change, one each."""
+
+    axes: Float[Tensor, "charts components"]
+    """Unit vectors n_k, up to sign."""
+    felt: float
+    """How much of the change of smell along them is the same in neighbouring charts, median share: what is
+    left of noise where turning is not smelt, near 1 where it is."""
+
+
 def heading_axes(
-    tangents: Float[Tensor, "charts 3 components"],
-    jacobians: Float[Tensor, "charts 3 odorants"],
+    tangents: Float[Tensor, "charts d components"],
+    jacobians: Float[Tensor, "charts d odorants"],
     atlas: Atlas,
-) -> Float[Tensor, "charts components"]:
+) -> HeadingAxes:
     """Find the unit vectors n_k, up to sign, along which the pooled odour gradients vanish.
 
     Walking changes the smell and turning does not, so the heading axis is the null direction of the odour
@@ -23,17 +35,19 @@ def heading_axes(
     gradients = gradients / gradients.square().sum(dim=(1, 2), keepdim=True).sqrt().clamp(min=1e-12)
     pooled = torch.einsum("kdc,kpco->kpdo", tangents, gradients[atlas.pool])
     change = torch.einsum("kpdo,kpeo->kde", pooled, pooled)
-    smallest = _eigenvectors(change)[:, :, 0]
-    axes = torch.einsum("kd,kdc->kc", smallest, tangents)
+    axes = torch.einsum("kd,kdc->kc", _eigenvectors(change)[:, :, 0], tangents)
     # n nᵀ and not n, as the sign of an eigenvector is arbitrary
     lines = torch.einsum("kdc,kpc->kpd", tangents, axes[atlas.pool])
     mean_line = torch.einsum("kpd,kpe->kde", lines, lines)
-    # the line that all agree on has the largest eigenvalue, and noise is spread over the other two
-    largest = _eigenvectors(mean_line)[:, :, -1]
-    return torch.einsum("kd,kdc->kc", largest, tangents)
+    # the line that all agree on has the largest eigenvalue, and noise is spread over the others
+    axes = torch.einsum("kd,kdc->kc", _eigenvectors(mean_line)[:, :, -1], tangents)
+    along = torch.einsum("kc,kpco->kpo", axes, gradients[atlas.pool])
+    power = along.square().sum(dim=2).mean(dim=1).clamp(min=1e-12)
+    felt = along.mean(dim=1).square().sum(dim=1) / power
+    return HeadingAxes(axes, float(felt.median()))
 
 
-def _eigenvectors(matrices: Float[Tensor, "charts 3 3"]) -> Float[Tensor, "charts 3 3"]:
+def _eigenvectors(matrices: Float[Tensor, "charts d d"]) -> Float[Tensor, "charts d d"]:
     """Give the eigenvectors of symmetric matrices in the order of their eigenvalues, on any device."""
     # in double precision, as the smallest eigenvalue may be the square of what is small already
     found: Tensor = torch.linalg.eigh(matrices.double().cpu()).eigenvectors

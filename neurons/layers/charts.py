@@ -7,8 +7,10 @@ from jaxtyping import Float, Int, Shaped
 from scipy.stats import chi2
 from torch import Tensor, nn
 
-DIMENSIONS = 3
-"""Degrees of freedom of a body on the floor, hence tangents per chart."""
+FIRST_TANGENTS = 3
+"""With which a chart begins: the degrees of freedom of a body on the floor."""
+TANGENTS = 6
+"""To which they are widened, to see how many are along the manifold."""
 
 
 def rows_of(table: Shaped[Tensor, "rows *row"], index: Int[Tensor, "*index"]) -> Shaped[Tensor, "..."]:
@@ -37,8 +39,10 @@ class Charts(nn.Module):
     views nor the noise of the nose need be known. That of smell is told from the lower decile, as if misfits
     were normal, since where most places look alike it would be that of two places. The chart of rank r learns
     with h = exp(−2 r / m): C_k and a_k move to the running means of h z and h o, and U_k follows Sanger's
-    rule on the residuals z − C_k, normalised by their variance as in `neurons.layers.sanger.Sanger`. `freeze`
-    makes the tangents orthonormal; after it nothing here changes any more.
+    rule on the residuals z − C_k, normalised by their variance as in `neurons.layers.sanger.Sanger`. `widen`
+    gives each chart more tangents than the manifold may have dimensions, `cut` leaves those along it, which
+    their variances tell from those of curvature and noise (`neurons.layers.dimension`). `freeze` makes the
+    tangents orthonormal; after it nothing here changes any more.
 
     Parameters
     ----------
@@ -48,6 +52,8 @@ class Charts(nn.Module):
         Draws the initial tangents.
     smell
         κ, what the usual misfit of smell counts beside the usual misfit of sight; 0 lets sight alone compete.
+    tangents
+        d, rows of U_k to begin with.
 
     References
     ----------
@@ -64,16 +70,17 @@ class Charts(nn.Module):
         *,
         generator: torch.Generator,
         smell: float = 0.5,
+        tangents: int = FIRST_TANGENTS,
     ) -> None:
         super().__init__()
         self.smell = smell
         # orthonormal from the start, as Sanger's rule expects of rows that are to part
-        draws = torch.randn(charts, components, DIMENSIONS, generator=generator)
+        draws = torch.randn(charts, components, tangents, generator=generator)
         self.centres: Tensor = nn.Buffer(torch.zeros(charts, components))
         self.smells: Tensor = nn.Buffer(torch.zeros(charts, odorants))
         self.tangents: Tensor = nn.Buffer(torch.linalg.qr(draws).Q.mT.contiguous())
         self.responsibility: Tensor = nn.Buffer(torch.zeros(charts))
-        self.variances: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS))
+        self.variances: Tensor = nn.Buffer(torch.zeros(charts, tangents))
         self.initialised: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self.misfits: Tensor = nn.Buffer(torch.ones(2))
         self.measured: Tensor = nn.Buffer(torch.zeros(()))
@@ -81,6 +88,17 @@ class Charts(nn.Module):
 
     def __len__(self) -> int:
         return len(self.centres)
+
+    @property
+    def dimensions(self) -> int:
+        """How many tangents a chart has."""
+        return self.tangents.shape[1]
+
+    @property
+    def spectra(self) -> Float[Tensor, "won d"]:
+        """Shares of what a chart sees along its tangents, of those charts that have won views."""
+        total = self.variances.sum(dim=1, keepdim=True)
+        return (self.variances / total)[total[:, 0] > 0]
 
     @property
     def smell_weight(self) -> Float[Tensor, ""]:
@@ -111,7 +129,7 @@ class Charts(nn.Module):
 
     def coordinates(
         self, codes: Float[Tensor, "views components"], chart: Int[Tensor, "views winners"]
-    ) -> Float[Tensor, "views winners 3"]:
+    ) -> Float[Tensor, "views winners d"]:
         """Chart coordinates U_k (z − C_k) of each code in the charts it excites."""
         residuals = self.residuals(codes, chart)
         return torch.einsum("nwdc,nwc->nwd", rows_of(self.tangents, chart), residuals)
@@ -153,8 +171,27 @@ class Charts(nn.Module):
         self.smells = torch.cat([self.smells, (self.smells[one] + self.smells[other]) / 2])
         self.tangents = torch.cat([self.tangents, self.tangents[one]])
         self.responsibility = torch.cat([self.responsibility, self.responsibility.new_zeros(len(longest))])
-        self.variances = torch.cat([self.variances, self.variances.new_zeros(len(longest), DIMENSIONS)])
+        self.variances = torch.cat([self.variances, self.variances.new_zeros(len(longest), self.dimensions)])
         self.initialised.fill_(len(self.centres))
+
+    def widen(self) -> None:
+        """Give each chart the tangents that it lacks of `TANGENTS`, at right angles to those that it has."""
+        charts, components = self.centres.shape
+        lacking = max(0, min(TANGENTS, components) - self.dimensions)
+        if not lacking:
+            return
+        # of a generator of its own: a map that was saved and loaded has no other, and those that it began
+        # with learn as if these were not there
+        draws = torch.randn(charts, lacking, components, generator=torch.Generator().manual_seed(0))
+        wide = torch.cat([self.tangents, draws.to(self.tangents)], dim=1)
+        drawn = torch.linalg.qr(wide.mT).Q.mT[:, self.dimensions :]
+        self.tangents = torch.cat([self.tangents, drawn], dim=1)
+        self.variances = torch.cat([self.variances, self.variances.new_zeros(charts, lacking)], dim=1)
+
+    def cut(self, dimensions: int) -> None:
+        """Leave each chart so many tangents, those of the largest variances."""
+        self.tangents = self.tangents[:, :dimensions].contiguous()
+        self.variances = self.variances[:, :dimensions].contiguous()
 
     def _nearest(
         self,
@@ -199,9 +236,8 @@ class Charts(nn.Module):
         weighted = weight[:, None] * y
         shift = codes.new_zeros(len(won), residual.shape[1]).index_add_(0, flat, weight[:, None] * residual)
         hebb = torch.zeros_like(tangents).index_add_(0, flat, weighted[:, :, None] * residual[:, None])
-        cross = codes.new_zeros(len(won), DIMENSIONS, DIMENSIONS).index_add_(
-            0, flat, weighted[:, :, None] * y[:, None]
-        )
+        products = weighted[:, :, None] * y[:, None]
+        cross = products.new_zeros(len(won), *products.shape[1:]).index_add_(0, flat, products)
         self.centres.index_add_(0, won, rate[:, None] * shift)
         drift = codes.new_zeros(len(won), misfit.shape[1]).index_add_(0, flat, weight[:, None] * misfit)
         self.smells.index_add_(0, won, rate[:, None] * drift)

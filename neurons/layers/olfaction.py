@@ -4,8 +4,6 @@ import torch
 from jaxtyping import Float, Int
 from torch import Tensor, nn
 
-from neurons.layers.charts import DIMENSIONS
-
 
 class Olfaction(nn.Module):
     """Per chart, the regression of log odour on f = [1, U_k (z − C_k)], kept as sums.
@@ -16,25 +14,25 @@ class Olfaction(nn.Module):
 
     Parameters
     ----------
-    charts, odorants
+    charts, odorants, tangents
         Sizes.
     ridge
         Prior on the slopes, as a fraction of the variance of the coordinates: a chart whose views lie on a
         line has no slope across it.
     """
 
-    def __init__(self, charts: int, odorants: int, *, ridge: float = 1e-3) -> None:
+    def __init__(self, charts: int, odorants: int, tangents: int, *, ridge: float = 1e-3) -> None:
         super().__init__()
         self.ridge = ridge
         # sums of thousands of views, whose small differences are the slopes: seven digits are few
-        self.gram: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS + 1, DIMENSIONS + 1, dtype=torch.double))
-        self.cross: Tensor = nn.Buffer(torch.zeros(charts, DIMENSIONS + 1, odorants, dtype=torch.double))
+        self.gram: Tensor = nn.Buffer(torch.zeros(charts, tangents + 1, tangents + 1, dtype=torch.double))
+        self.cross: Tensor = nn.Buffer(torch.zeros(charts, tangents + 1, odorants, dtype=torch.double))
 
     def partial_fit(
         self,
         chart: Int[Tensor, "views winners"],
         weight: Float[Tensor, "views winners"],
-        coordinates: Float[Tensor, "views winners 3"],
+        coordinates: Float[Tensor, "views winners d"],
         log_odour: Float[Tensor, "views odorants"],
     ) -> None:
         """Add a batch of views to the charts they excite with the given weights."""
@@ -46,12 +44,12 @@ class Olfaction(nn.Module):
         self.gram.index_add_(0, chart.flatten(), gram.double())
         self.cross.index_add_(0, chart.flatten(), cross.double())
 
-    def solve(self) -> tuple[Float[Tensor, "charts odorants"], Float[Tensor, "charts 3 odorants"]]:
+    def solve(self) -> tuple[Float[Tensor, "charts odorants"], Float[Tensor, "charts d odorants"]]:
         """Give intercepts (log concentration at the centre) and Jacobians (per unit of chart coordinate)."""
         # of the chart's own sums: a prior that weighs alike after any number of views
         slopes = torch.diagonal(self.gram, dim1=1, dim2=2)[:, 1:].mean(dim=1)
         prior = torch.zeros_like(self.gram)
-        for d in range(1, DIMENSIONS + 1):
+        for d in range(1, prior.shape[1]):
             # a chart that no view excited has nothing but the 1e-9, and smells of nothing
             prior[:, d, d] = self.ridge * slopes + 1e-9
         # the intercept is not drawn to 0: log concentration has no natural zero

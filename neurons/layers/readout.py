@@ -9,7 +9,7 @@ from torch import Tensor, nn
 from neurons.angles import mean_angle
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.synchronisation import Compass
-from neurons.layers.charts import DIMENSIONS, Charts, rows_of
+from neurons.layers.charts import Charts, rows_of
 
 
 class ChartActivity(NamedTuple):
@@ -50,10 +50,10 @@ class Readout(nn.Module):
 
     Parameters
     ----------
-    charts, components, odorants
+    charts, components, odorants, tangents
         Sizes.
     winners
-        Charts that speak for a view: two along each of its three dimensions.
+        Charts that speak for a view: two along each dimension of a body on the floor.
     breadth
         Width h_k of a chart's receptive field, in units of its spacing: wide enough that a view between
         charts hears several, narrow enough that none speaks where its tangents no longer fit.
@@ -66,6 +66,7 @@ class Readout(nn.Module):
         charts: int,
         components: int,
         odorants: int,
+        tangents: int,
         *,
         winners: int = 8,
         breadth: float = 0.7,
@@ -78,14 +79,14 @@ class Readout(nn.Module):
         self.phases: Tensor = nn.Buffer(torch.full((charts,), torch.nan))
         self.turning: Tensor = nn.Buffer(torch.full((charts, components), torch.nan))
         self.intercepts: Tensor = nn.Buffer(torch.full((charts, odorants), torch.nan))
-        self.jacobians: Tensor = nn.Buffer(torch.full((charts, DIMENSIONS, odorants), torch.nan))
+        self.jacobians: Tensor = nn.Buffer(torch.full((charts, tangents, odorants), torch.nan))
 
     def solve(
         self,
         atlas: Atlas,
         compass: Compass | None,
         intercepts: Float[Tensor, "charts odorants"],
-        jacobians: Float[Tensor, "charts 3 odorants"],
+        jacobians: Float[Tensor, "charts d odorants"],
     ) -> None:
         """Take over what the charts have agreed on; without a compass headings stay NaN."""
         self.spacing = atlas.spacing

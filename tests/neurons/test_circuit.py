@@ -54,7 +54,7 @@ def test_added_charts_keep_what_does_not_stand_on_charts(most: int, charts: int)
     for name in ("olfaction.gram", "readout.phases", "place.centres", "heading.afferents.activity"):
         grown.get_buffer(name).fill_(1.0)
     grown.place.branches.fill_(False)  # noqa: FBT003
-    for name in ("agreement", "ambiguity", "connected"):
+    for name in ("agreement", "ambiguity", "connected", "spectrum", "votes", "felt"):
         grown.get_buffer(name).fill_(1.0)
     grown.add_charts()
     assert len(grown.charts) == charts
@@ -68,5 +68,44 @@ def test_added_charts_keep_what_does_not_stand_on_charts(most: int, charts: int)
     assert not grown.heading.afferents.activity.any()
     assert len(grown.heading.afferents.activity) == charts
     assert grown.agreement.isnan().all()
-    assert grown.ambiguity.isnan().all()
+    for name in ("ambiguity", "spectrum", "votes", "felt"):
+        assert grown.get_buffer(name).isnan().all(), name
     assert not grown.connected
+
+
+def spread(seeing: Circuit, *dimensions: int) -> None:
+    """Let so many charts each have seen 1, 2, … dimensions."""
+    variances = [
+        [1.0] * d + [0.01] * (6 - d) for d, charts in enumerate(dimensions, 1) for _ in range(charts)
+    ]
+    seeing.charts.variances = torch.tensor(variances)
+
+
+@pytest.mark.parametrize(
+    ("dimensions", "told", "kept"),
+    [((0, 24, 16), (2, 0.6), 2), ((4, 4, 4, 28), (4, 0.7), 4), ((14, 13, 13), (1, 0.35), 3)],
+)
+def test_charts_keep_the_tangents_that_most_tell(
+    dimensions: tuple[int, ...], told: tuple[int, float], kept: int
+) -> None:
+    """Too few that agree say nothing: charts keep as many as they began with."""
+    seeing = circuit()
+    assert seeing.dimension[0] == 0
+    seeing.widen_charts()
+    assert seeing.charts.dimensions == 6
+    widest = seeing.charts.tangents.clone()
+    spread(seeing, *dimensions)
+    seeing.cut_charts()
+    assert seeing.dimension == (told[0], pytest.approx(told[1]))
+    assert torch.equal(seeing.charts.tangents, widest[:, :kept])
+    assert seeing.olfaction.gram.shape == (40, kept + 1, kept + 1)
+    assert seeing.readout.jacobians.shape == (40, kept, 3)
+
+
+def test_views_that_are_all_the_same_tell_no_dimension() -> None:
+    seeing = circuit()
+    seeing.widen_charts()
+    seeing.cut_charts()
+    assert seeing.dimension[0] == 0
+    assert seeing.votes.isnan().all()
+    assert seeing.charts.dimensions == 3

@@ -6,7 +6,16 @@ import pytest
 from neurons.guard import Agreement, Guard
 
 SOUND = Agreement(
-    signs=1.0, phases=0.9999, connected=False, foretold=0.97, ambiguous=0.0, aliased=0.0, views_per_chart=5.7
+    signs=1.0,
+    phases=0.9999,
+    connected=False,
+    foretold=0.97,
+    ambiguous=0.0,
+    aliased=0.0,
+    views_per_chart=5.7,
+    dimension=3,
+    vote=0.8,
+    felt=0.05,
 )
 
 
@@ -58,6 +67,12 @@ def test_atlas(signs: float, phases: float, bounds: dict[str, float], said: str)
         ({"connected": True, "foretold": 0.85}, "foretells 0.85 of the other"),
         ({"connected": True, "foretold": math.nan}, "walking does not confirm"),
         ({"phases": math.nan, "signs": math.nan}, "no loop"),
+        ({"felt": 0.35}, "of 3 directions smell should leave one alone, that of turning"),
+        ({"felt": 0.3}, ""),
+        ({"felt": math.nan, "vote": math.nan}, ""),
+        ({"vote": 0.35, "dimension": 4}, "only 35% of its charts tell 4 degrees of freedom"),
+        ({"vote": 0.45}, ""),
+        ({"vote": 0.35, "phases": 0.9}, "agree only"),
     ],
 )
 def test_heading(figures: dict[str, Any], said: str) -> None:

@@ -46,7 +46,8 @@ def stream(count: int, seed: int) -> tuple[torch.Tensor, torch.Tensor]:
 def test_each_layer_learns_in_its_own_period_and_is_then_fixed(network: Network) -> None:
     own = {
         "code": "code.",
-        "charts": "charts.",
+        # what will stand on the charts is of their size, and blank
+        "charts": ("charts.", "olfaction.", "readout."),
         "olfaction": "olfaction.",
         "cells": ("place.", "heading."),
         "metric_map": "metric_map.",
@@ -72,12 +73,15 @@ def test_the_guard_is_told_what_the_network_knows(network: Network) -> None:
     assert [name for name, figure in network.told._asdict().items() if figure == figure] == [  # noqa: PLR0124
         "connected",
         "views_per_chart",
+        "dimension",
     ]
     network.agreement = torch.tensor([0.9, 0.8])
     network.connected.logical_not_()
     network.metric_map.cross_validated_r2 = torch.tensor([0.7, 0.6])
     network.ambiguity = torch.tensor([0.5, 0.4])
-    assert network.told == pytest.approx((0.9, 0.8, True, 0.6, 0.5, 0.4, EPOCH / 60))
+    network.votes = torch.tensor([0.1, 0.2, 0.7, 0.0, 0.0])
+    network.felt.fill_(0.25)
+    assert network.told == pytest.approx((0.9, 0.8, True, 0.6, 0.5, 0.4, EPOCH / 60, 3, 0.7, 0.25))
 
 
 def test_an_unfinished_network_is_not_to_be_trusted(network: Network) -> None:

@@ -13,7 +13,7 @@ from jaxtyping import Float
 
 from arena import Axis, Babble, Body, Recording
 from arena.eye.base import AnyEye
-from cogmap.coordinates import GeneralisedCoordinates
+from cogmap.coordinates import GeneralisedCoordinates, chart_dimension
 from cogmap.evaluation.joints import (
     JointReading,
     Windings,
@@ -27,6 +27,7 @@ from cogmap.experiments import Conditions, Result
 from cogmap.features.image_codes import sharp_codes
 from cogmap.navigation import Localiser
 from cogmap.plots import plot_barcodes, plot_coordinates
+from cogmap.shape import LocalDimension
 
 Truth: TypeAlias = tuple[Sequence[Axis], Float[np.ndarray, "views joints"]]
 """Axes, and where the body was on each of them."""
@@ -86,6 +87,12 @@ class BodyTrial:
         return [axis.kind == "circle" for axis in self.axes]
 
     @cached_property
+    def charted(self) -> LocalDimension:
+        """Degrees of freedom as charts of all views of the walk tell them."""
+        found = self.coordinates
+        return chart_dimension(found.encode(self.walk.views), seed=found.seed)
+
+    @cached_property
     def located(self) -> Float[np.ndarray, "fresh joints"]:
         """Errors (rad, m) of joints that a `Localiser` reads for the fresh views from those that are kept."""
         known, seen = (sharp_codes(part.views) for part in (self.kept, self.fresh))
@@ -121,6 +128,8 @@ class BodyTrial:
             "eye": found.eye_,
             "dimension": found.dimension_,
             "dimension_vote": found.vote_,
+            "charts_dimension": self.charted.dimension,
+            "charts_vote": self.charted.vote,
             "betti": list(found.betti_.numbers),
             "betti_resolved": list(found.betti_.resolved),
             "betti_margins": [list(margins) for margins in found.betti_.margins],

@@ -153,6 +153,9 @@ def test_small_map_knows_place_and_heading(walk: Recording, camera: Camera, cmap
     assert cmap.trusted_, cmap.reason_
     assert found["heading_resultant"] > 0.98
     assert found["position_median_m"] < 0.15
+    assert cmap.dimension_ == 3
+    assert cmap.vote_ > 0.5
+    assert cmap.spectrum_[:3].sum() > 0.8 > cmap.spectrum_[:2].sum()
 
 
 def test_diagnosis_of_a_map(cmap: CognitiveMap, monkeypatch: pytest.MonkeyPatch) -> None:

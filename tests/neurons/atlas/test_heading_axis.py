@@ -31,7 +31,7 @@ def degrees_apart(axes: Tensor, exact: Tensor) -> Tensor:
 
 def test_turning_does_not_change_the_smell(tiling: Tiling, turning: Callable[[Tensor], Tensor]) -> None:
     pose, charts = tiling
-    axes = heading_axes(charts.tangents, jacobians(tiling), Atlas.of(charts.centres))
+    axes = heading_axes(charts.tangents, jacobians(tiling), Atlas.of(charts.centres)).axes
     assert degrees_apart(axes, turning(pose)).max() < 1
     torch.testing.assert_close(axes.norm(dim=1), torch.ones(len(pose)))
 
@@ -41,10 +41,10 @@ def test_pooling_sees_past_a_single_odorant(tiling: Tiling, turning: Callable[[T
     change = jacobians(tiling)
     for source in range(3):
         change[source::3, :, [other for other in range(3) if other != source]] = 0
-    axes = heading_axes(charts.tangents, change, Atlas.of(charts.centres))
+    axes = heading_axes(charts.tangents, change, Atlas.of(charts.centres)).axes
     assert degrees_apart(axes, turning(pose)).median() < 8
     change[::10] = 0
-    axes = heading_axes(charts.tangents, change, Atlas.of(charts.centres))
+    axes = heading_axes(charts.tangents, change, Atlas.of(charts.centres)).axes
     assert axes.isfinite().all()
     assert degrees_apart(axes, turning(pose))[::10].median() < 8
 
@@ -53,8 +53,18 @@ def test_steep_neighbours_do_not_outvote(tiling: Tiling) -> None:
     _, charts = tiling
     atlas, change = Atlas.of(charts.centres), jacobians(tiling)
     factor = torch.rand(len(change), 1, 1, generator=torch.Generator().manual_seed(0)) * 100 + 1
-    plain, scaled = (heading_axes(charts.tangents, each, atlas) for each in (change, factor * change))
+    plain, scaled = (heading_axes(charts.tangents, each, atlas).axes for each in (change, factor * change))
     assert degrees_apart(plain, scaled).max() < 0.1
+
+
+def test_a_sense_that_knows_turning_is_told(tiling: Tiling) -> None:
+    """Noise of slopes is not shared by neighbours; a change that is felt is."""
+    _, charts = tiling
+    atlas, change = Atlas.of(charts.centres), jacobians(tiling)
+    noise = 0.1 * torch.randn(change.shape, generator=torch.Generator().manual_seed(1))
+    assert heading_axes(charts.tangents, change + noise, atlas).felt < 0.2
+    turned = torch.cat([change + noise, charts.tangents[:, :, 2:]], dim=2)
+    assert heading_axes(charts.tangents, turned, atlas).felt > 0.4
 
 
 def by_loops(tangents: np.ndarray, jacobian: np.ndarray, pool: np.ndarray) -> np.ndarray:
@@ -77,6 +87,6 @@ def test_same_as_loops_on_noise(seed: int) -> None:
     tangents = torch.linalg.qr(torch.randn(40, 6, 3, generator=generator)).Q.mT
     noise = torch.randn(40, 3, 4, generator=generator)
     atlas = Atlas.of(centres)
-    axes = heading_axes(tangents, noise, atlas).numpy()
+    axes = heading_axes(tangents, noise, atlas).axes.numpy()
     trusted = by_loops(tangents.double().numpy(), noise.double().numpy(), atlas.pool.numpy())
     assert np.median(np.abs(np.sum(axes * trusted, axis=1)) / np.linalg.norm(trusted, axis=1)) > 0.9999

@@ -254,3 +254,42 @@ def test_grows_halfway_along_the_longest_overlaps() -> None:
     assert charts.responsibility.all()
     charts.grow(overlapping, 9)
     assert len(charts) == 10
+
+
+def test_wider_charts_learn_their_first_tangents_as_ever(views: Tensor) -> None:
+    plain, wide = blank(40), blank(40)
+    for layer in (plain, wide):
+        layer.partial_fit(views[:200], smells(views[:200]), winners=4, window=1e9)
+    wide.widen()
+    gram = wide.tangents[:, 3:] @ wide.tangents.mT
+    torch.testing.assert_close(gram[:, :, 3:], torch.eye(3).expand(40, 3, 3), atol=1e-5, rtol=0)
+    assert gram[:, :, :3].abs().max() < 1e-5
+    for layer in (plain, wide):
+        layer.partial_fit(views[200:600], smells(views[200:600]), winners=4, window=1e9)
+    torch.testing.assert_close(wide.tangents[:, :3], plain.tangents, atol=1e-5, rtol=1e-4)
+    torch.testing.assert_close(wide.centres, plain.centres)
+    wide.widen()
+    assert wide.dimensions == 6
+    wide.cut(3)
+    torch.testing.assert_close(wide.variances, plain.variances, rtol=1e-4, atol=1e-7)
+
+
+def test_no_more_tangents_than_components() -> None:
+    few = blank(30, 5)
+    few.widen()
+    assert few.dimensions == 5
+
+
+def test_spectra_of_a_cloud_in_two_dimensions() -> None:
+    """Charts that no view has moved have nothing to tell."""
+    x = torch.zeros(3000, 8)
+    x[:, :2] = torch.rand(3000, 2, generator=torch.Generator().manual_seed(6))
+    layer = blank(40, 8)
+    layer.partial_fit(x[:40], smells(x[:40]), winners=2, window=1e9)
+    layer.widen()
+    assert layer.spectra.shape == (0, 6)
+    for batch in x[40:].split(100):
+        layer.partial_fit(batch, smells(batch), winners=2, window=1e9)
+    torch.testing.assert_close(layer.spectra.sum(dim=1), torch.ones(len(layer.spectra)))
+    assert (layer.spectra[:, :2].sum(dim=1) > 0.8).all()
+    assert (layer.spectra[:, 1] > 3 * layer.spectra[:, 2]).all()

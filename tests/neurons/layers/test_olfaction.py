@@ -29,7 +29,7 @@ def batch(truth: tuple[Tensor, Tensor]) -> Batch:
 
 
 def smelt(*batches: Batch, **prior: float) -> Olfaction:
-    layer = Olfaction(CHARTS, ODORANTS, **prior)
+    layer = Olfaction(CHARTS, ODORANTS, 3, **prior)
     for each in batches:
         layer.partial_fit(*each)
     return layer

@@ -31,7 +31,7 @@ def settled(tiling: Tiling) -> Callable[[Compass | None], Readout]:
 
     def solve(compass: Compass | None) -> Readout:
         jacobians = charts.tangents[:, :, :2] @ SLOPES
-        readout = Readout(len(charts), 4, 3)
+        readout = Readout(len(charts), 4, 3, 3)
         readout.solve(Atlas.of(charts.centres), compass, smell(pose), jacobians)
         return readout
 
@@ -68,7 +68,7 @@ def test_weights_are_gaussian_in_distance(
     settings: dict[str, float],
 ) -> None:
     _, charts = tiling
-    readout, codes = Readout(len(charts), 4, 3, **settings), cylinder(unseen)
+    readout, codes = Readout(len(charts), 4, 3, 3, **settings), cylinder(unseen)
     readout.spacing = Atlas.of(charts.centres).spacing
     chart, weight = readout.excite(charts, codes)
     torch.testing.assert_close(weight.sum(dim=1), torch.ones(len(codes)))
@@ -83,7 +83,7 @@ def test_weights_are_gaussian_in_distance(
 def test_charts_that_smell_of_another_place_fall_silent(tolerance: float) -> None:
     """Three charts of one place and two of another that looks the same: the more and the nearer decide."""
     charts = Charts(5, 4, 1, generator=torch.Generator().manual_seed(0))
-    readout = Readout(5, 4, 1, winners=5, tolerance=tolerance)
+    readout = Readout(5, 4, 1, 3, winners=5, tolerance=tolerance)
     readout.intercepts = torch.tensor([[0.0], [2.0], [0.1], [2.1], [-0.1]])
     readout.jacobians.zero_()
     readout.phases, readout.turning = torch.tensor([0.0, 3.0, 0.1, 3.0, -0.1]), torch.zeros(5, 4)
