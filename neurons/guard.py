@@ -121,8 +121,8 @@ class Guard:
         if told.felt > self.most_felt:
             return (
                 f"its charts agree on {told.felt:.0%} of how smell changes along their heading axes, more "
-                f"than {self.most_felt:.0%}: of {told.dimension} directions smell should leave one alone, that of "
-                "turning; give signals that know place but not heading"
+                f"than {self.most_felt:.0%}: of {told.dimension} directions smell should leave one alone, "
+                "that of turning; give signals that know place but not heading"
             )
         if told.vote < self.least_vote:
             return (

@@ -1,7 +1,7 @@
 """How far a map stands from the bounds that decide whether it is trusted.
 
 It stands clear of a bound when its figure is farther from it than half of the bound's own distance from 1,
-or a quarter where that is far; a vote of many charts, when a few of them could not turn it. It is soundly trusted
+or a quarter where that is far; a vote of many charts, when a few could not turn it. It is soundly trusted
 when it stands clear above all, and soundly refused when it stands clear below one.
 """
 

@@ -111,6 +111,8 @@ def demo(
             **{f"betti_{name}_resolved": list(found.resolved) for name, found in bars.items()},
             "betti_reasons": {name: list(found.reasons) for name, found in bars.items()},
             "betti_votes": {name: list(found.votes) for name, found in bars.items()},
+            "dimension": cmap.dimension_,
+            "dimension_vote": cmap.vote_,
             "phase_eigenvalue": cmap.phase_eigenvalue_,
             "seconds": seconds,
             "learn_seconds": {stage: round(spent, 3) for stage, spent in cmap.seconds_.items()},

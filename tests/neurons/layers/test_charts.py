@@ -288,8 +288,7 @@ def test_spectra_of_a_cloud_in_two_dimensions() -> None:
     layer.partial_fit(x[:40], smells(x[:40]), winners=2, window=1e9)
     layer.widen()
     assert layer.spectra.shape == (0, 6)
-    for batch in x[40:].split(100):
-        layer.partial_fit(batch, smells(batch), winners=2, window=1e9)
+    for batch in x[40:].repeat(4, 1).split(100):
+        layer.partial_fit(batch, smells(batch), winners=2, window=3000.0)
     torch.testing.assert_close(layer.spectra.sum(dim=1), torch.ones(len(layer.spectra)))
-    assert (layer.spectra[:, :2].sum(dim=1) > 0.8).all()
-    assert (layer.spectra[:, 1] > 3 * layer.spectra[:, 2]).all()
+    assert (layer.spectra[:, :2].sum(dim=1) > 0.85).all()
