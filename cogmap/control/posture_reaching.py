@@ -159,8 +159,7 @@ class PostureReaching:
         """Give the work to goals that are near, by finer codes."""
         if not len(live):
             return np.empty((0, self._jacobians.shape[1]))
-        learnt = self._reacher.jacobian
-        jacobians = learnt.fitted(learnt.near(codes), self._reacher.sharp)
+        jacobians = self._reacher.jacobian.bent(codes, self._reacher.sharp)
         return implied_work(jacobians, self._sharp[live] - sharp_codes(views))
 
     def _stalls(

@@ -77,18 +77,43 @@ class VisualJacobian:
     def at(self, codes: Float[np.ndarray, "queries features"]) -> Jacobians:
         """Give how each feature changes per command · s of each motor, around views."""
         near = self.near(codes)
-        return np.concatenate(
-            [self.fitted(near[part], self._codes) for part in gen_batches(len(near), BATCH)]
-        )
+        parts = [near[part] for part in gen_batches(len(near), BATCH)]
+        return np.concatenate([self._fitted(part, self._work[part], self._codes) for part in parts])
 
-    def fitted(
-        self, near: Int[np.ndarray, "queries transitions"], features: Float[np.ndarray, "views features"]
+    def bent(
+        self, codes: Float[np.ndarray, "queries features"], finer: Float[np.ndarray, "views finer"]
     ) -> Jacobians:
-        """Fit the change of whatever features of the views, by transitions that `near` found."""
-        work, change = self._work[near], features[near + 1] - features[near]
+        r"""Give how each finer feature of the views changes, around views, where Jacobians turn.
+
+        .. math:: \Delta f_t = (J + \textstyle\sum_m s_{tm} H_m)^\top u_t
+
+        is fitted, s the work that leads from the view to the middle of transition t. Where motors do almost
+        the same, as where an arm is stretched, the nearest transitions spread widely along what hardly shows,
+        and a Jacobian that is their mean takes a body for arrived that is not.
+        """
+        near = self.near(codes)
+        around = (self._codes[near] + self._codes[near + 1]) / 2 - codes[:, None]
+        here = np.repeat(self._fitted(near, self._work[near], self._codes), TRANSITIONS, axis=0)
+        apart = implied_work(here, around.reshape(len(here), -1)).reshape(*near.shape, -1)
+        work = self._work[near]
+        turned = (apart[..., None] * work[..., None, :]).reshape(*near.shape, -1)
+        terms = np.concatenate([work, turned], axis=2)
+        # to the same size, as work times work is smaller than work by a pace
+        size = np.sqrt(np.square(terms).mean(axis=1, keepdims=True)).clip(1e-12)
+        fitted: Jacobians = self._fitted(near, terms / size, finer) / size.swapaxes(1, 2)
+        return fitted[:, : work.shape[2]]
+
+    def _fitted(
+        self,
+        near: Int[np.ndarray, "queries transitions"],
+        terms: Float[np.ndarray, "queries transitions terms"],
+        features: Float[np.ndarray, "views features"],
+    ) -> Float[np.ndarray, "queries terms features"]:
+        """Regress the changes of features in transitions on what was done in them."""
         # what a held motor should have done tells nothing
-        counted = np.swapaxes(np.where(self.held_[near][..., None], 0, work), 1, 2)
-        found: np.ndarray = np.linalg.solve(_ridged(counted @ work, RIDGE), counted @ change)
+        counted = np.swapaxes(np.where(self.held_[near][..., None], 0, terms), 1, 2)
+        change = features[near + 1] - features[near]
+        found: np.ndarray = np.linalg.solve(_ridged(counted @ terms, RIDGE), counted @ change)
         return found
 
 

@@ -31,8 +31,11 @@ def three_links(conditions: Conditions) -> Result:
     trial = BodyTrial.of(conditions, body, eye, truth=hand)
     postures = replace(trial, truth=all_axes)
     pairs = look_alikes(trial.coordinates.codes_, postures.joints)
-    # of those most alike, pairs that are not each other's
-    shown = pairs[np.linspace(0, len(pairs) // 10, min(3, len(pairs))).astype(int)]
+    # more alike than those that are kept, which are as far from each other as can be
+    joints = trial.walk.require("joints")
+    alike = look_alikes(trial.coordinates.encode(trial.walk.views), joints)
+    # pairs that are not each other's
+    shown = alike[np.linspace(0, len(alike) // 100, min(3, len(alike))).astype(int)]
     result = trial.result("three links")
     metrics = {
         **result.metrics,
@@ -41,9 +44,9 @@ def three_links(conditions: Conditions) -> Result:
     }
     if not len(shown):
         return replace(result, metrics=metrics)
-    segments = trial.body.segments(postures.joints[shown.ravel()])
+    segments = trial.body.segments(joints[shown.ravel()])
     figure = plot_look_alikes(
-        segments.reshape(len(shown), 2, -1, 2, 2), np.stack([trial.kept.views[view] for view in shown])
+        segments.reshape(len(shown), 2, -1, 2, 2), np.stack([trial.walk.views[view] for view in shown])
     )
     return replace(
         result,

@@ -40,3 +40,25 @@ def test_too_little_babbling_is_told() -> None:
         VisualJacobian(np.zeros((11, 3)), np.zeros((10, 2)))
     with pytest.raises(CogmapError, match="work"):
         VisualJacobian(np.zeros((100, 3)), np.zeros((100, 2)))
+
+
+def test_a_jacobian_that_turns_is_that_of_the_view_and_not_a_mean() -> None:
+    """What the second motor does turns with its own joint, and shows less than what the first does."""
+
+    def seen(joints: np.ndarray) -> np.ndarray:
+        first, second = joints.T
+        return np.column_stack([first, 0.1 * np.sin(6 * second), 0.1 * np.cos(6 * second)])
+
+    rng = np.random.default_rng(2)
+    begun = rng.uniform(-0.3, 0.3, size=(600, 2))
+    moved = begun + np.array([0.04, 0.05]) * rng.choice([-1, 1], size=(600, 2))
+    places = np.stack([begun, moved], axis=1).reshape(-1, 2)
+    learnt = VisualJacobian(seen(places), np.diff(places, axis=0))
+    queries = places[rng.choice(np.flatnonzero(np.abs(places).max(axis=1) < 0.2), 40)]
+    angle = 6 * queries[:, 1]
+    exact = 0.6 * np.column_stack([np.zeros(40), np.cos(angle), -np.sin(angle)])
+    plain, bent = (
+        np.median(np.linalg.norm(found[:, 1] - exact, axis=1))
+        for found in (learnt.at(seen(queries)), learnt.bent(seen(queries), seen(places)))
+    )
+    assert bent < 0.5 * plain
