@@ -3,13 +3,14 @@
 It finds what a real one would refuse, on machines that have none.
 """
 
-from functools import partial
+from collections.abc import Iterator
+from functools import cache, partial
 from typing import Any
 
 import torch
 from torch import Tensor
 from torch.overrides import TorchFunctionMode, resolve_name
-from torch.utils._pytree import tree_leaves, tree_map_only
+from torch.utils._pytree import tree_map_only
 
 ELSEWHERE = torch.device("cuda", 0)
 _MOVES = {"torch.Tensor.to", "torch.Tensor.cpu", "torch.Tensor.copy_", "torch.Tensor.new_tensor"}
@@ -27,8 +28,8 @@ class Elsewhere(TorchFunctionMode):
 
     def __torch_function__(self, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
         """Run a function, and mark what comes of it."""
-        kwargs, name = dict(kwargs or {}), resolve_name(func) or func.__name__
-        tensors = [leaf for leaf in tree_leaves((args, kwargs)) if isinstance(leaf, Tensor)]
+        kwargs, name = dict(kwargs or {}), _name_of(func)
+        tensors = list(_tensors((args, kwargs)))
         if name == "torch.Tensor.device.__get__":
             return ELSEWHERE if is_elsewhere(tensors[0]) else func(*args)
         _check_together(name, tensors)
@@ -44,9 +45,25 @@ class Elsewhere(TorchFunctionMode):
         elif kwargs.get("device") is not None:
             there, kwargs["device"] = _names(kwargs["device"]), "cpu"
         found = func(*args, **kwargs)
-        if isinstance(found, torch.Size):
+        if isinstance(found, Tensor):
+            return _marked(there, tensors, found)
+        if isinstance(found, torch.Size | bool | int | float):
             return found
         return tree_map_only(Tensor, partial(_marked, there, tensors), found)
+
+
+@cache
+def _name_of(func: Any) -> str:
+    return resolve_name(func) or func.__name__
+
+
+def _tensors(given: Any) -> Iterator[Tensor]:
+    """Find all tensors in nested arguments."""
+    if isinstance(given, Tensor):
+        yield given
+    elif isinstance(given, tuple | list | dict):
+        for part in given.values() if isinstance(given, dict) else given:
+            yield from _tensors(part)
 
 
 def _names(device: torch.device | str) -> bool:

@@ -18,7 +18,7 @@ from cogmap.imagination.decoder import ChartDecoder
 from cogmap.imagination.painter import Painter, Turned
 from cogmap.imagination.places import RememberedPlaces
 from cogmap.imagination.stroll import stroll
-from cogmap.imagination.surprise import Surprise
+from cogmap.imagination.surprise import ALARM, NOTABLE, Surprise
 from cogmap.inputs import check_array, check_choice, check_views, checked_count
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import CognitiveMap
@@ -207,7 +207,7 @@ class Imagination:
         there = compared.seen(views, poses)
         pixels = there.unusual
         # aligning takes four times as long as all else: only where something may have changed
-        doubtful = np.flatnonzero(pixels.max(axis=(1, 2)) > self.threshold / 2)
+        doubtful = np.flatnonzero(pixels.max(axis=(1, 2)) > NOTABLE / ALARM * self.threshold)
         if len(doubtful):
             seen = np.stack([views[view] for view in doubtful])
             there = Seen(*(part[doubtful] for part in there))
@@ -218,6 +218,7 @@ class Imagination:
             phase=poses[:, 2],
             threshold=self.threshold,
             sense=self.sense,
+            bounds=np.stack([self.places.position.min(axis=0), self.places.position.max(axis=0)]),
         )
 
     def recognise(self, views: Any) -> Float[np.ndarray, "views 3"]:
@@ -231,14 +232,14 @@ class Imagination:
 
     @cached_property
     def threshold(self) -> float:
-        """Above what surprises where nothing has changed: three times what one view in 100 reaches."""
+        """Above what surprises where nothing has changed: `ALARM` times what one view in 100 reaches."""
         places = self.places
         chosen = places.sample
         views = np.stack([places.views[view] for view in chosen])
         poses = np.column_stack([places.position[chosen], places.phase[chosen]])
         compared = replace(self._comparison, without=chosen)
         pixels = compared.judged(views, poses, compared.seen(views, poses))[1]
-        return float(3 * np.percentile(pixels.max(axis=(1, 2)), 99))
+        return float(ALARM * np.percentile(pixels.max(axis=(1, 2)), 99))
 
     @cached_property
     def places(self) -> RememberedPlaces:

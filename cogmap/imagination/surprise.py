@@ -17,6 +17,12 @@ DOUBT, CARRIED = 0.5, 0.1
 """Shares of the variance: of what the sources differ by, and of what flow changed of the nearest."""
 PATCH = 11 / 360
 """How wide a patch is that is judged as a whole, in turns."""
+ALARM = 3.0
+"""How many times what one remembered view in 100 reaches a view must surprise to alarm by itself,"""
+NOTABLE = 1.5
+"""and to be looked at again, and counted where many views tell together that something has changed."""
+MANY = 0.05
+"""Share of the views that must be notable for this: where nothing has changed hardly any is."""
 BEYOND = 0.5
 """How far the plan reaches beyond the remembered places, in units of their extent."""
 CELLS = 120
@@ -36,6 +42,8 @@ class Surprise:
     """Above what is seen where nothing has changed."""
     sense: int
     """Whether phase grows to the left (1) or to the right (−1)."""
+    bounds: Float[np.ndarray, "2 2"]
+    """Least and largest coordinates of all that is remembered."""
 
     @property
     def columns(self) -> Float32[np.ndarray, "views width"]:
@@ -48,6 +56,16 @@ class Surprise:
         return np.asarray(self.pixels.max(axis=(1, 2)) > self.threshold)
 
     @property
+    def notable(self) -> Bool[np.ndarray, "views"]:
+        """Which views may show something that has changed: no proof, unless there are many."""
+        return np.asarray(self.pixels.max(axis=(1, 2)) > NOTABLE / ALARM * self.threshold)
+
+    @property
+    def changed(self) -> bool:
+        """Whether something has changed: a view alarms, or more are notable than would be by chance."""
+        return bool(self.alarms.any() or self.notable.mean() > MANY)
+
+    @property
     def shares(self) -> Float[np.ndarray, "views"]:
         """Share of each view that surprises: nearly all of it after a kidnapping, or when a lamp is out."""
         return np.asarray((self.pixels > self.threshold).mean(axis=(1, 2)))
@@ -55,31 +73,32 @@ class Surprise:
     def plan(self) -> Plan:
         """Pool what surprises over all views, back-projected onto the map: where something has changed.
 
-        A cell is as surprising as the alarmed views are in its direction, on average: 1 where each is most
+        A cell is as surprising as the notable views are in its direction, on average: 1 where each is most
         surprised, and else the square of the ratio to that.
 
         Raises
         ------
         CogmapError
-            When no view shows anything that has changed.
+            When nothing has changed, as far as these views tell.
         """
-        alarms = np.flatnonzero(self.alarms)
-        if not len(alarms):
+        if not self.changed:
             raise CogmapError("nothing surprises in these views, so there is nothing to place on the map")
-        low, high = self.position.min(axis=0), self.position.max(axis=0)
+        notable = np.flatnonzero(self.notable)
+        low, high = self.bounds
         extent = float((high - low).max())
         low, high = low - BEYOND * extent, high + BEYOND * extent
         cell = float((high - low).max()) / CELLS
         x, y = (np.arange(start, stop, cell) + cell / 2 for start, stop in zip(low, high, strict=True))
         width = self.pixels.shape[2]
-        columns = self.columns[alarms]
+        columns = self.columns[notable]
         profiles = np.square(columns / columns.max(axis=1, keepdims=True))
         share = np.zeros((len(y), len(x)))
-        for position, phase, profile in zip(self.position[alarms], self.phase[alarms], profiles, strict=True):
+        poses = zip(self.position[notable], self.phase[notable], profiles, strict=True)
+        for position, phase, profile in poses:
             bearing = self.sense * (np.arctan2(y[:, None] - position[1], x - position[0]) - phase)
             # column 0 looks straight back over the left shoulder, the middle one ahead
             share += profile[np.floor((np.pi - bearing) * width / (2 * np.pi)).astype(int) % width]
-        return Plan(x, y, share / len(alarms))
+        return Plan(x, y, share / len(notable))
 
 
 @dataclass(frozen=True)
@@ -90,10 +109,10 @@ class Plan:
     y: Float[np.ndarray, "rows"]
     """Middles of the cells, in the unit of the map."""
     share: Float[np.ndarray, "rows columns"]
-    """How much the alarmed views are surprised in its direction, from 0 to 1."""
+    """How much the notable views are surprised in its direction, from 0 to 1."""
 
     @property
-    def changed(self) -> Float[np.ndarray, "2"]:
+    def peak(self) -> Float[np.ndarray, "2"]:
         """Where something has changed: the most surprising cell."""
         row, column = np.unravel_index(self.share.argmax(), self.share.shape)
         return np.array([self.x[column], self.y[row]])

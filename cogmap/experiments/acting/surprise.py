@@ -42,10 +42,11 @@ def surprise(conditions: Conditions) -> Result:
     One box is moved by 1.3 m, another like it added, or it is removed. `auc_*` are over the pixels of 500
     views that are rendered with and without the change: which differ by more than 8 grey levels.
     `located_median_m` is the median over the three of how far the middle of the box is from where all views
-    together place the change. `false_alarms` are views with any pixel above the threshold among `unchanged`
-    ones of fresh walks. Kidnapped views are from another room, and where a lamp is out the light comes from
-    one side; `*_share` is the median share of pixels that surprise. A room without a box beside its platform
-    is given one before it is learnt.
+    together place the change, NaN where they do not tell that there is one. `false_alarms` are views with any
+    pixel above the threshold among `unchanged` ones of fresh walks, and `false_changes` the blocks of 500 of
+    these that tell a change together. Kidnapped views are from another room, and where a lamp is out the light
+    comes from one side; `*_share` is the median share of pixels that surprise. A room without a box beside its
+    platform is given one before it is learnt.
     """
     conditions = replace(conditions, room=with_a_box(conditions.room))
     dreamer = Dreamer.of(conditions)
@@ -65,20 +66,21 @@ def surprise(conditions: Conditions) -> Result:
             continue
         before = camera.render(conditions.room, poses)
         differs = np.abs(before.astype(int) - views).max(axis=3) > VISIBLE
-        where = dreamer.metres(found.plan().changed[None])[0] if found.alarms.any() else np.full(2, np.nan)
+        where = dreamer.metres(found.plan().peak[None])[0] if found.changed else np.full(2, np.nan)
         off = min(float(np.linalg.norm(where - box)) for box in boxes)
         located.append(off)
         metrics[f"auc_{case}"] = float(roc_auc_score(differs.ravel(), found.pixels.ravel()))
         metrics[f"located_{case}_m"] = off
         rows[-1] |= {"auc": metrics[f"auc_{case}"], "located_m": off}
         shown[case] = (room, views, found, where)
-    false_alarms, count = _false_alarms(dreamer, conditions)
+    alarms, changes, count = _false_alarms(dreamer, conditions)
     table = pd.DataFrame(rows)
     return Result(
         metrics={
             **metrics,
             "located_median_m": float(np.median(located)),
-            "false_alarms": false_alarms,
+            "false_alarms": alarms,
+            "false_changes": changes,
             "unchanged": count,
             "threshold": dreamer.imagination.threshold,
             "kidnapped_share": float(table.loc[table["case"] == "kidnapped", "share"].iloc[0]),
@@ -168,13 +170,15 @@ def _row(case: str, found: Surprise) -> dict[str, Any]:
     }
 
 
-def _false_alarms(dreamer: Dreamer, conditions: Conditions) -> tuple[int, int]:
-    """Count alarms among views of fresh walks where nothing has changed, and these."""
+def _false_alarms(dreamer: Dreamer, conditions: Conditions) -> tuple[int, int, int]:
+    """Count views that alarm where nothing has changed, blocks that tell a change, and the views seen."""
     count = min(UNCHANGED, 2 * conditions.views)
     more = replace(conditions, seed=conditions.seed + CHANGED_SEED)
-    alarms = seen = 0
+    alarms = changes = seen = 0
     for walk in (dreamer.trial.fresh, more.explore(Brownian(), Camera.panoramic(), fresh=True)):
-        for rows in gen_batches(min(len(walk), count - seen), 250):
-            alarms += int(dreamer.imagination.surprise(np.asarray(walk.views[rows])).alarms.sum())
+        for rows in gen_batches(min(len(walk), count - seen), VIEWS):
+            found = dreamer.imagination.surprise(np.asarray(walk.views[rows]))
+            alarms += int(found.alarms.sum())
+            changes += found.changed
         seen += min(len(walk), count - seen)
-    return alarms, seen
+    return alarms, changes, seen

@@ -194,8 +194,8 @@ def plot_surprise(
     panels[0, 0].set_title("seen", fontsize=TINY, color=INK)
     panels[0, 1].set_title("surprise (white: twice the threshold)", fontsize=TINY, color=INK)
     plan = right.subplots()
-    tidy_room(plan, title=f"where, by {int(found.alarms.sum())} of {len(views)} views")
-    if found.alarms.any():
+    tidy_room(plan, title=f"where, by {int(found.notable.sum())} of {len(views)} views")
+    if found.changed:
         pooled = found.plan()
         x, y = np.meshgrid(pooled.x, pooled.y)
         laid = metres(np.column_stack([x.ravel(), y.ravel()])).reshape(*x.shape, 2)

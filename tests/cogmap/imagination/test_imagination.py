@@ -119,7 +119,7 @@ def test_a_moved_box_surprises_where_it_stood_or_stands(
     box = np.array([[*boxes[1]["center"], 0.0]])
     where, _ = dream.cmap.framed(box)
     # six views from one square metre tell a direction well, and a distance badly
-    seen, true = (complex(*place) for place in (surprised.plan().changed, where[0]))
+    seen, true = (complex(*place) for place in (surprised.plan().peak, where[0]))
     assert abs(np.angle(seen / true)) < 0.1
     with pytest.raises(CogmapError, match="nothing surprises"):
         usual.plan()

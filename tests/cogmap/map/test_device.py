@@ -15,7 +15,7 @@ from tests.elsewhere import ELSEWHERE, Elsewhere, is_elsewhere
 
 @pytest.fixture(scope="module")
 def walk() -> Recording:
-    return explore(Arena.load("furnished"), Brownian(), Camera.panoramic(90, 15), views=800, seed=0)
+    return explore(Arena.load("furnished"), Brownian(), Camera.panoramic(90, 15), views=500, seed=0)
 
 
 @pytest.fixture
