@@ -44,9 +44,9 @@ def surprise(conditions: Conditions) -> Result:
     `located_median_m` is the median over the three of how far the middle of the box is from where all views
     together place the change, NaN where they do not tell that there is one. `false_alarms` are views with any
     pixel above the threshold among `unchanged` ones of fresh walks, and `false_changes` the blocks of 500 of
-    these that tell a change together. Kidnapped views are from another room, and where a lamp is out the light
-    comes from one side; `*_share` is the median share of pixels that surprise. A room without a box beside its
-    platform is given one before it is learnt.
+    these that tell a change together. Kidnapped views are from another room, and where a lamp is out the
+    light comes from one side; `*_share` is the median share of pixels that surprise. A room without a box
+    beside its platform is given one before it is learnt.
     """
     conditions = replace(conditions, room=with_a_box(conditions.room))
     dreamer = Dreamer.of(conditions)
