@@ -17,7 +17,7 @@ DOUBT, CARRIED = 0.5, 0.1
 """Shares of the variance: of what the sources differ by, and of what flow changed of the nearest."""
 PATCH = 11 / 360
 """How wide a patch is that is judged as a whole, in turns."""
-ALARM = 3.0
+ALARM = 4.0
 """How many times what one remembered view in 100 reaches a view must surprise to alarm by itself,"""
 NOTABLE = 1.5
 """and to be looked at again, and counted where many views tell together that something has changed."""
