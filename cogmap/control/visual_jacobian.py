@@ -82,7 +82,7 @@ class VisualJacobian:
 
     def bent(
         self, codes: Float[np.ndarray, "queries features"], finer: Float[np.ndarray, "views finer"]
-    ) -> Jacobians:
+    ) -> Float[np.ndarray, "queries motors finer"]:
         r"""Give how each finer feature of the views changes, around views, where Jacobians turn.
 
         .. math:: \Delta f_t = (J + \textstyle\sum_m s_{tm} H_m)^\top u_t
@@ -100,7 +100,7 @@ class VisualJacobian:
         terms = np.concatenate([work, turned], axis=2)
         # to the same size, as work times work is smaller than work by a pace
         size = np.sqrt(np.square(terms).mean(axis=1, keepdims=True)).clip(1e-12)
-        fitted: Jacobians = self._fitted(near, terms / size, finer) / size.swapaxes(1, 2)
+        fitted: np.ndarray = self._fitted(near, terms / size, finer) / size.swapaxes(1, 2)
         return fitted[:, : work.shape[2]]
 
     def _fitted(
