@@ -107,7 +107,8 @@ class Circuit(nn.Module):
         """Leave the charts as many tangents as most tell; where too few agree, as many as they began with."""
         spectra = self.charts.spectra
         if len(spectra):  # of views that are all the same nothing is told
-            self.spectrum, self.votes = spectra.median(dim=0).values, dimension_votes(spectra)
+            # a median along an axis is refused on devices that are to give the same bits twice
+            self.spectrum, self.votes = spectra.quantile(0.5, dim=0), dimension_votes(spectra)
         agreed = float(self.votes.max()) >= self.guard.least_vote
         self.charts.cut(int(self.votes.argmax()) + 1 if agreed else FIRST_TANGENTS)
         self._stand_on_charts()

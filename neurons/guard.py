@@ -62,7 +62,7 @@ class Guard:
         where smell leaves turning alone; .44 to .83 with a nose that smells heading, too, where what is taken
         for turning is whatever changes smell least.
     least_vote
-        Share of the charts that must tell one dimension: .5 to .91 in maps of 17,000 views, .44 and more in
+        Share of the charts that must tell one dimension: .54 to .94 in maps of 17,000 views, .44 and more in
         those of 3,000 that were right; below .4, in maps too coarse, the next dimension has as many votes.
     most_views_per_chart
         With more, a map that takes poses for others is advised to use more charts before anything is changed

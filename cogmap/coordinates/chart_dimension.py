@@ -64,5 +64,5 @@ def chart_dimension(
         spectra = layer.spectra
     if not len(spectra):
         raise CogmapError("all codes are the same; give those of views that differ")
-    votes, spectrum = dimension_votes(spectra).numpy(), spectra.median(dim=0).values.numpy()
+    votes, spectrum = dimension_votes(spectra).numpy(), spectra.quantile(0.5, dim=0).numpy()
     return LocalDimension(int(votes.argmax()) + 1, float(votes.max()), spectrum)

@@ -115,6 +115,8 @@ def test_a_moved_box_surprises_where_it_stood_or_stands(
     assert surprised.alarms.mean() > 0.5
     usual = waking.surprise(views[-6:])
     assert not usual.alarms.any()
+    everywhere = waking.places.position
+    np.testing.assert_array_equal(usual.bounds, [everywhere.min(axis=0), everywhere.max(axis=0)])
     assert (surprised.shares < 0.1).all()
     box = np.array([[*boxes[1]["center"], 0.0]])
     where, _ = dream.cmap.framed(box)
