@@ -7,7 +7,12 @@ if TYPE_CHECKING:
     from cogmap import cells, evaluation, features, graph, navigation, plots, shape, testing
     from cogmap.control import MotorModel, PostureReacher, Reacher
     from cogmap.coordinates import GeneralisedCoordinates
-    from cogmap.errors import CogmapError, UnlikeArithmeticWarning, UntrustedMapWarning
+    from cogmap.errors import (
+        CogmapError,
+        OpenSeamWarning,
+        UnlikeArithmeticWarning,
+        UntrustedMapWarning,
+    )
     from cogmap.evaluation.scoring import score
     from cogmap.features import BagOfWords
     from cogmap.imagination import Imagination
@@ -30,6 +35,7 @@ __all__ = [
     "LandmarkIsomap",
     "Localiser",
     "MotorModel",
+    "OpenSeamWarning",
     "Plan",
     "PostureReacher",
     "Reacher",
@@ -52,7 +58,7 @@ __all__ = [
 _HOMES = {
     "control": ("MotorModel", "PostureReacher", "Reacher"),
     "coordinates": ("GeneralisedCoordinates",),
-    "errors": ("CogmapError", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
+    "errors": ("CogmapError", "OpenSeamWarning", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
     "evaluation.scoring": ("score",),
     "features": ("BagOfWords",),
     "imagination": ("Imagination",),

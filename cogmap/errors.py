@@ -5,6 +5,10 @@ class CogmapError(ValueError):
     """Bad input: the message says what was given, what was expected and what to do."""
 
 
+class OpenSeamWarning(UserWarning):
+    """Views that were said to be panoramas do not close around; the message says what to do."""
+
+
 class UnlikeArithmeticWarning(UserWarning):
     """Results that stand beside each other were calculated by processors that round differently."""
 

@@ -26,7 +26,7 @@ class Network(Circuit):
     Parameters
     ----------
     features, odorants, **circuit
-        As for `neurons.circuit.Circuit`.
+        As for `neurons.circuit.Circuit`; without odorants, `stages` must be `SIGHT_ALONE`.
     epoch
         Views in an epoch, the unit of the critical periods.
     stages
@@ -43,7 +43,7 @@ class Network(Circuit):
         **circuit: Any,
     ) -> None:
         super().__init__(features, odorants, **circuit)
-        self.epoch = epoch
+        self.epoch, self.odorants = epoch, odorants
         self.stages = tuple(stages)
         self.views_seen: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self.stage_index: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
@@ -127,15 +127,15 @@ class Network(Circuit):
 
     def heading_diagnosis(self) -> str:
         """Say why headings cannot be trusted, or nothing when they can."""
-        return self.unfinished or self.guard.heading(self.told)
+        return self.unfinished or self.noseless or self.guard.heading(self.told)
 
     def place_diagnosis(self) -> str:
         """Say why places cannot be trusted, or nothing when they can."""
-        return self.unfinished or self.guard.place(self.told)
+        return self.unfinished or self.noseless or self.guard.place(self.told)
 
     def metric_diagnosis(self) -> str:
         """Say why there is no metric map, or nothing when there is one."""
-        return self.unfinished or self.metric_map.diagnosis()
+        return self.unfinished or self.noseless or self.metric_map.diagnosis()
 
     def position_diagnosis(self) -> str:
         """Say why positions on the metric map cannot be trusted, or nothing when they can."""
@@ -147,6 +147,16 @@ class Network(Circuit):
         if self.stage == self.stages[-1]:
             return ""
         return f"it is still in its {self.stage.name!r} stage; show it more views"
+
+    @property
+    def noseless(self) -> str:
+        """What sight alone cannot tell; empty where there is a second sense."""
+        if self.odorants:
+            return ""
+        return (
+            "it was given sight alone, which does not tell place from heading: both populations need a "
+            "second sense that knows place but not heading; give odours, or another signal of that kind"
+        )
 
     def _index(self, name: str) -> int:
         return [stage.name for stage in self.stages].index(name)

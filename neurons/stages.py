@@ -119,6 +119,16 @@ class CodedStage(Stage[Tensor]):
 
 
 @dataclass(frozen=True)
+class RestStage(CodedStage):
+    """Nothing more is learnt: sight alone has charts, and nothing that tells cells places and headings."""
+
+    name = "rest"
+
+    def learn(self, circuit: Circuit, batch: Batch[Tensor]) -> None:
+        """Let the views pass."""
+
+
+@dataclass(frozen=True)
 class RecallStage(Stage[Recalled]):
     """A stage that learns from what the atlas recalls."""
 
@@ -335,3 +345,6 @@ SMELL_FIRST: tuple[Stage[Any], ...] = (
     *(HeadingStage() if isinstance(stage, CellStage) else stage for stage in STAGES),
 )
 """The same, but place cells learn before there is anything to see."""
+
+SIGHT_ALONE: tuple[Stage[Any], ...] = (CodeStage(), ChartStage(), RestStage())
+"""Without a second sense: an atlas of what is seen, on which no compass and no cell can be taught."""

@@ -17,8 +17,9 @@ from sklearn.utils.validation import check_is_fitted
 from arena.angles import wrap_angle
 from cogmap.coordinates.heights import heights
 from cogmap.coordinates.relaxation import read_between, relaxed
-from cogmap.coordinates.view_code import Eye, ViewCode
+from cogmap.coordinates.view_code import ViewCode
 from cogmap.errors import CogmapError
+from cogmap.features.seam import Eye
 from cogmap.graph.neighbour_graph import neighbour_graph
 from cogmap.inputs import check_views, checked_count
 from cogmap.map.even_memory import EvenMemory

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, get_args
+from typing import Any, get_args
 
 import cv2
 import numpy as np
@@ -12,14 +12,11 @@ from sklearn.utils import gen_batches
 from torch import Tensor
 
 from cogmap.features.image_codes import HEIGHT, WIDTH, image_codes
-from cogmap.features.seam import wraps_around
+from cogmap.features.seam import Eye, wraps_around
 from cogmap.inputs import check_choice, check_views, checked_count
 from cogmap.threads import one_thread
 from neurons.layers.retina import Retina
 from neurons.layers.sanger import Sanger
-
-Eye = Literal["panorama", "perspective"]
-"""What a camera makes of the world: a strip all around, or a picture with borders."""
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same code."""

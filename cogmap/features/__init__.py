@@ -4,10 +4,12 @@ from cogmap.features.bag_of_words import BagOfWords
 from cogmap.features.image_codes import image_codes
 from cogmap.features.image_distances import cosine_distances, earth_mover_distances, pixel_distances
 from cogmap.features.panorama import PanoramaCode
+from cogmap.features.visual_smell import VisualSmell
 
 __all__ = [
     "BagOfWords",
     "PanoramaCode",
+    "VisualSmell",
     "cosine_distances",
     "earth_mover_distances",
     "image_codes",

@@ -7,12 +7,11 @@ import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float, Int
 from sklearn.base import BaseEstimator, TransformerMixin
-from sklearn.decomposition import PCA
 from sklearn.utils.validation import check_is_fitted
 
-from cogmap.errors import CogmapError
 from cogmap.features.compass import misfit, synchronise_headings, turns
 from cogmap.features.strips import Strips, strips
+from cogmap.features.turn_invariant import turn_invariant_axes
 from cogmap.graph.knn import nearest_points
 from cogmap.graph.spots import spot_graph
 from cogmap.inputs import checked_count
@@ -78,15 +77,10 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         del y
         seen = strips(X)
         count = len(seen.turn_invariant)
-        if not np.ptp(seen.turn_invariant, axis=0).any():
-            raise CogmapError(f"{count} panoramas are all alike; explore more than one place")
-        components = min(checked_count("components", self.components), count)
+        components = checked_count("components", self.components)
         neighbours = min(checked_count("neighbours", self.neighbours), count - 1)
         with one_thread():
-            # 4,000 views are enough for principal components.
-            sample = seen.turn_invariant[:: -(-count // 4000)]
-            components = min(components, *sample.shape)
-            axes = PCA(components, svd_solver="covariance_eigh").fit(sample)
+            axes = turn_invariant_axes(seen.turn_invariant, components)
             found = axes.transform(seen.turn_invariant).astype(np.float64)
             scale = 1 / np.sqrt(found.var(axis=0).sum())
             self.places_ = scale * found

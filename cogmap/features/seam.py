@@ -1,15 +1,21 @@
 """The seam of an image: whether its last column continues in its first, as that of a panorama does."""
 
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from cogmap.inputs import check_views
 
-LOOKED_AT = 1000
+Eye = Literal["panorama", "perspective"]
+"""What a camera makes of the world: a strip all around, or a picture with borders."""
+
+LOOKED_AT = 250
 """Views by which it is told; spread evenly over those that are given."""
 CONTINUES = 0.5
 """Share of the usual correlation of neighbouring columns from which on two columns are neighbours."""
+TELLS = 0.3
+"""Usual correlation of neighbouring columns below which none are: .9 and more in pictures of a room, about 0
+in noise."""
 
 
 def wraps_around(views: Any) -> bool:
@@ -29,6 +35,32 @@ def wraps_around(views: Any) -> bool:
     CogmapError
         For views that are not uint8 images.
     """
+    seam, usual = _likeness_of_neighbours(views)
+    return bool(seam >= CONTINUES * usual > 0)
+
+
+def seam_is_open(views: Any) -> bool:
+    """Tell whether views are clearly of an eye with borders: neighbouring columns change alike, but the last
+    and the first do not.
+
+    Not the opposite of `wraps_around`: of views that are all the same, or of noise, neither is so.
+
+    Parameters
+    ----------
+    views
+        (views, height, width, 3) uint8, from different poses.
+
+    Raises
+    ------
+    CogmapError
+        For views that are not uint8 images.
+    """
+    seam, usual = _likeness_of_neighbours(views)
+    return bool(usual >= TELLS and seam < CONTINUES * usual)
+
+
+def _likeness_of_neighbours(views: Any) -> tuple[float, float]:
+    """Correlate what changes in the last and the first column, and in other neighbours (median)."""
     check_views(views)
     chosen = np.unique(np.linspace(0, views.shape[0] - 1, min(LOOKED_AT, views.shape[0])).astype(int))
     deviation = np.stack([np.asarray(views[int(view)], np.float32) for view in chosen])
@@ -38,4 +70,4 @@ def wraps_around(views: Any) -> bool:
     power = np.sqrt(np.square(columns).sum(axis=1)) + 1
     beside = np.roll(columns, -1, axis=0)
     correlation = np.einsum("cv,cv->c", columns, beside) / (power * np.roll(power, -1))
-    return bool(correlation[-1] >= CONTINUES * np.median(correlation[:-1]) > 0)
+    return float(correlation[-1]), float(np.median(correlation[:-1]))

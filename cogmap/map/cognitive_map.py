@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike
 from torch import Tensor
 from tqdm import tqdm
 
-from cogmap.errors import CogmapError, UntrustedMapWarning
-from cogmap.inputs import check_views, checked_count, log_odours
+from cogmap.errors import CogmapError, OpenSeamWarning, UntrustedMapWarning
+from cogmap.inputs import check_choice, check_views, checked_count, log_odours
 from cogmap.map.activity import Activity
 from cogmap.map.device import checked_device
 from cogmap.map.diagnosis import Counted, Diagnosis, Verdict, topology_verdict
@@ -31,13 +31,18 @@ from neurons.layers.readout import Recalled
 from neurons.layers.retina import Retina
 from neurons.merging import forked, merge
 from neurons.network import Network
-from neurons.stages import SMELL_FIRST, STAGES, StripStage, chosen, joined
+from neurons.stages import SIGHT_ALONE, SMELL_FIRST, STAGES, StripStage, chosen, joined
 
 if TYPE_CHECKING:
     from cogmap.map.relaxed_places import RelaxedPlaces
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same map."""
+EYES: Mapping[str, Mapping[str, Any]] = {
+    "panorama": {},
+    "perspective": {"wrap": False, "columns": 45, "acuity": 5.0, "surround": 15.0, "pool": 4.0},
+}
+"""Retinas that suit them."""
 RELAXED = "relaxed_places."
 """How what `refine` has learnt is called among the weights of a saved map."""
 
@@ -50,6 +55,11 @@ class CognitiveMap:
     sight alone tells the recalled smell (hence place) and the heading, through place cells and head-direction
     cells. Where views come in the order of a walk, it also learns where places lie, as a metric map, and
     takes a slow offset out of heading; shuffled views do no harm, but teach neither.
+
+    The second sense may be any that knows place but not heading. Without one it is a map still: `encode` gives
+    the space of the view manifold, to localise, plan and count holes in, and `dimension_` its degrees of
+    freedom. But nothing then tells place from heading, so that both populations are silent, and `reason_`
+    says so.
 
     Parameters
     ----------
@@ -68,6 +78,9 @@ class CognitiveMap:
     smell_first
         Whether place cells learn from what is smelt before anything is seen; else later, from what sight
         recalls of it.
+    eye
+        "panorama" for views all around, or "perspective" for any with borders; told from the views themselves
+        when None (`cogmap.features.seam`), and a warning where it is told and they speak against it.
     epoch
         Views per epoch when learning from a stream with `partial_fit`; `fit` sets it to the views it is
         given.
@@ -91,7 +104,9 @@ class CognitiveMap:
     seconds_
         Time spent per stage of development in this process, s.
     view_shape_, odorants_
-        (height, width, 3) of the views and number of odorants it was fitted to.
+        (height, width, 3) of the views and number of odorants it was fitted to, 0 for sight alone.
+    eye_
+        By which eye the views were taken, told or found.
 
     Raises
     ------
@@ -107,11 +122,12 @@ class CognitiveMap:
     heading_cells: int = 60
     smell: float = 0.5
     smell_first: bool = False
+    eye: str | None = None
     epoch: int = 17_000
     seed: int = 0
     device: str = "cpu"
 
-    def fit(self, views: Any, odours: ArrayLike | None, *, progress: bool = False) -> CognitiveMap:
+    def fit(self, views: Any, odours: ArrayLike | None = None, *, progress: bool = False) -> CognitiveMap:
         """Learn a map from scratch, as epochs of `partial_fit` over the views.
 
         Their order is random in every epoch but those of stages that learn from it, as the metric map does.
@@ -121,18 +137,18 @@ class CognitiveMap:
         views
             (views, height, width, 3) uint8; an array, or anything lazy whose slices are arrays.
         odours
-            (views, odorants) concentrations > 0.
+            (views, odorants) concentrations > 0; None for sight alone.
         progress
             Whether to show a bar on stderr.
         """
         check_views(views)
-        logs = log_odours(odours, views=views.shape[0])
+        logs = self._smelt(odours, views.shape[0], None)
         if views.shape[0] < checked_count("charts", self.charts):
             raise CogmapError(
                 f"there are {views.shape[0]} views for {self.charts} charts; "
                 "record more views or use fewer charts: about a fifth as many as views"
             )
-        self._begin(tuple(views.shape[1:]), logs.shape[1], epoch=views.shape[0])
+        self._begin(tuple(views.shape[1:]), logs.shape[1], self._found_eye(views), epoch=views.shape[0])
         network, count, smells = self._network, views.shape[0], self._here(logs)
         order = np.random.default_rng(self.seed)
         with one_thread(self._device), tqdm(total=network.epochs, unit="epoch", disable=not progress) as bar:
@@ -161,7 +177,7 @@ class CognitiveMap:
                 bar.refresh()
         return self
 
-    def partial_fit(self, views: Any, odours: ArrayLike | None, *, jump: bool = False) -> CognitiveMap:
+    def partial_fit(self, views: Any, odours: ArrayLike | None = None, *, jump: bool = False) -> CognitiveMap:
         """Learn from the next views of a stream.
 
         Time and memory per view do not depend on how many came before. See `neurons.network.Network` for what
@@ -170,15 +186,17 @@ class CognitiveMap:
         Parameters
         ----------
         views, odours
-            As for `fit`, in the order of a walk if there is one.
+            As for `fit`, in the order of a walk if there is one. The first views tell the eye, and whether there
+            are odours.
         jump
             Whether these views do not follow the last ones, as where another walk begins.
         """
         fresh = not hasattr(self, "_network")
         check_views(views, None if fresh else self.view_shape_)
-        logs = log_odours(odours, views=views.shape[0], odorants=None if fresh else self.odorants_)
+        logs = self._smelt(odours, views.shape[0], None if fresh else self.odorants_)
         if fresh:
-            self._begin(tuple(views.shape[1:]), logs.shape[1], epoch=checked_count("epoch", self.epoch))
+            epoch = checked_count("epoch", self.epoch)
+            self._begin(tuple(views.shape[1:]), logs.shape[1], self._found_eye(views), epoch=epoch)
         if jump:
             self._network.break_sequence()
         with one_thread(self._device):
@@ -247,16 +265,20 @@ class CognitiveMap:
         if views is None:
             if odours is None:
                 raise CogmapError("give views, odours for a look in the dark, or both")
+            self._check_nose()
             return self._sniff(log_odours(odours, odorants=self.odorants_))
         check_views(views, self.view_shape_)
         logs = None
         if odours is not None:
+            self._check_nose()
             logs = self._here(log_odours(odours, views=views.shape[0], odorants=self.odorants_))
         with one_thread(self._device):
             if not self.trusted_:
                 warnings.warn(
                     f"this map is not to be trusted: {self.reason_}", UntrustedMapWarning, stacklevel=2
                 )
+            if not self.odorants_:
+                return self._unsensed(views.shape[0])
             parts = [
                 self._look(network.recall(strip, None if logs is None else logs[rows]))
                 for rows, strip in self._strips(views)
@@ -318,7 +340,7 @@ class CognitiveMap:
             the charts are measured, as seen and as seen and smelt, which takes some seconds.
         """
         network = self._grown
-        topology = Verdict(network.unfinished)
+        topology = Verdict(network.unfinished or self._sees_alone)
         if topology.trusted:
             if homology is None:
                 # what counts holes is as heavy as all that a map needs otherwise
@@ -384,6 +406,7 @@ class CognitiveMap:
         learnt = {
             "view_shape": self.view_shape_,
             "odorants": self.odorants_,
+            "eye": self.eye_,
             "epoch": network.epoch,
             "charts": len(network.charts),
             "tangents": network.charts.dimensions,
@@ -410,6 +433,7 @@ class CognitiveMap:
             loaded._begin(
                 tuple(learnt["view_shape"]),
                 learnt["odorants"],
+                learnt["eye"],
                 epoch=learnt["epoch"],
                 charts=learnt["charts"],
                 tangents=learnt["tangents"],
@@ -428,17 +452,20 @@ class CognitiveMap:
             raise CogmapError(f"{path} does not hold a whole map: {error}") from None
         return loaded
 
-    def _begin(self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, **grown: int) -> None:
+    def _begin(
+        self, view_shape: tuple[int, ...], odorants: int, eye: str, *, epoch: int, **grown: int
+    ) -> None:
         first = checked_count("charts", self.charts)
         most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
         if not 0 <= self.smell < np.inf:
             raise CogmapError(f"smell is {self.smell!r}; give a number of at least 0, how much it counts")
         self._device = checked_device(self.device)
-        self._retina = Retina(*view_shape[:2]).to(self._device)
-        self.view_shape_, self.odorants_ = view_shape, odorants
+        self._retina = Retina(*view_shape[:2], **EYES[eye]).to(self._device)
+        self.view_shape_, self.odorants_, self.eye_ = view_shape, odorants, eye
         self.seconds_: dict[str, float] = {}
         self.relaxed_places_ = None
         self.refine_reason_ = "it was shown no views to relax places by; call refine"
+        stages = SMELL_FIRST if self.smell_first else STAGES
         with one_thread():  # even the initial weights, orthonormal by QR, depend on the number of threads
             self._network = Network(
                 self._retina.features,
@@ -449,11 +476,57 @@ class CognitiveMap:
                 heading_cells=checked_count("heading_cells", self.heading_cells),
                 smell=self.smell,
                 epoch=epoch,
-                stages=SMELL_FIRST if self.smell_first else STAGES,
+                stages=stages if odorants else SIGHT_ALONE,
                 # drawn on the processor: the same initial weights on every device
                 generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
                 **{"charts": first} | grown,
             ).to(self._device)
+
+    @staticmethod
+    def _smelt(
+        odours: ArrayLike | None, views: int, odorants: int | None
+    ) -> Float[np.ndarray, "views odorants"]:
+        """Give log odours to learn from; of no odorants where there are none."""
+        if odours is None and not odorants:
+            return np.empty((views, 0), np.float32)
+        if odorants == 0:
+            raise CogmapError(
+                f"this map was begun by sight alone, and now gets odours of shape {np.shape(odours)}; give none, "
+                "or begin another map with both"
+            )
+        return log_odours(odours, views=views, odorants=odorants)
+
+    def _check_nose(self) -> None:
+        if not self.odorants_:
+            raise CogmapError(f"this map knows no odours: {self._grown.noseless}")
+
+    def _found_eye(self, views: Any) -> str:
+        """Take the eye that was told, or tell it from views."""
+        # what compares features of views is heavy, and who perceives by a saved map waits for none of it
+        from cogmap.features.seam import seam_is_open  # noqa: PLC0415
+
+        open_seam = seam_is_open(views)
+        if self.eye is None:
+            return "perspective" if open_seam else "panorama"
+        check_choice("eye", self.eye, tuple(EYES))
+        if self.eye == "panorama" and open_seam:
+            warnings.warn(
+                "views are said to be panoramas, but their last column does not continue in the first; "
+                "look at one, or give eye='perspective'",
+                OpenSeamWarning,
+                stacklevel=3,
+            )
+        return self.eye
+
+    @property
+    def _sees_alone(self) -> str:
+        """Why holes that sight alone counts are not those of the room for sure; empty with a second sense."""
+        if self.odorants_:
+            return ""
+        return (
+            "by sight alone places that look alike are one, and no count of its loops can tell; give a second "
+            "sense, or count those of `encode` where nothing looks alike"
+        )
 
     @property
     def _grown(self) -> Network:
@@ -485,6 +558,13 @@ class CognitiveMap:
         phase = mean_angle(angle, torch.ones_like(angle))
         place, heading = (cells.afferents(recalled.excited) for cells in (network.place, network.heading))
         return place, heading, phase, recalled.odour, position
+
+    def _unsensed(self, count: int) -> Activity:
+        """What a map that has no second sense says of so many views: nothing."""
+        cells = self.place_cells + self.heading_cells
+        blind = np.full((count, cells + 3), np.nan, np.float32)
+        place, heading, phase, position = np.split(blind, [self.place_cells, cells, cells + 1], axis=1)
+        return Activity(place, heading, phase[:, 0], blind[:, :0], position)
 
     def _sniff(self, log_odours: Float[np.ndarray, "views odorants"]) -> Activity:
         """Place cells and position in the dark, where heading is not known."""

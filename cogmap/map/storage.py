@@ -13,7 +13,7 @@ from cogmap.atomic import atomic_write
 from cogmap.errors import CogmapError
 
 Kind = Literal["map", "memory", "motor", "coordinates"]
-VERSIONS: dict[Kind, int] = {"map": 5, "memory": 1, "motor": 1, "coordinates": 1}
+VERSIONS: dict[Kind, int] = {"map": 6, "memory": 1, "motor": 1, "coordinates": 1}
 WEIGHTS = "weights.safetensors"
 
 

@@ -47,7 +47,7 @@ class Charts(nn.Module):
     Parameters
     ----------
     charts, components, odorants
-        K and the lengths of a code and of a smell.
+        K and the lengths of a code and of a smell, 0 without a nose.
     generator
         Draws the initial tangents.
     smell
@@ -84,7 +84,10 @@ class Charts(nn.Module):
         self.initialised: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self.misfits: Tensor = nn.Buffer(torch.ones(2))
         self.measured: Tensor = nn.Buffer(torch.zeros(()))
-        self.median_over_decile = float(chi2.ppf(0.5, odorants) / chi2.ppf(0.1, odorants))
+        # without a nose there is no misfit of smell to measure
+        self.median_over_decile = (
+            float(chi2.ppf(0.5, odorants) / chi2.ppf(0.1, odorants)) if odorants else 0.0
+        )
 
     def __len__(self) -> int:
         return len(self.centres)

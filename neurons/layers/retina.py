@@ -1,4 +1,4 @@
-"""The retina: low acuity and contrast gain control of a panoramic strip."""
+"""The retina: low acuity and contrast gain control of a strip, all around or with borders."""
 
 import torch
 from jaxtyping import Float, Int, UInt8
@@ -7,16 +7,20 @@ from torch import Tensor, nn
 from neurons.errors import NeuronsError
 
 
-def _circular_gaussian(columns: int, sigma: float) -> Float[Tensor, "columns columns"]:
-    """Circulant matrix that blurs a ring of columns; each row sums to one."""
+def _gaussian(columns: int, sigma: float, *, wrap: bool) -> Float[Tensor, "columns columns"]:
+    """Matrix that blurs columns, around a ring or up to the borders; the weights of each sum to one."""
     offset = torch.arange(columns, dtype=torch.float64)
-    distance = torch.minimum(offset, columns - offset)
+    distance = torch.minimum(offset, columns - offset) if wrap else offset
     # in double precision, so that rows sum to one as exactly as float32 can say
     kernel = torch.exp(-0.5 * (distance / sigma) ** 2)
     # far below rounding; float32 would hold it as subnormals, with which products take fifty times as long
     kernel[kernel < 1e-20] = 0
-    index = (torch.arange(columns)[:, None] - torch.arange(columns)[None]) % columns
-    return (kernel / kernel.sum())[index].float()
+    index = torch.arange(columns)[:, None] - torch.arange(columns)[None]
+    if wrap:
+        return (kernel / kernel.sum())[index % columns].float()
+    weights = kernel[index.abs()]
+    # columns of the matrix are receptors, as strips are multiplied from the left
+    return (weights / weights.sum(dim=0)).float()
 
 
 def _area_average(pixels: int, receptors: int) -> Float[Tensor, "receptors pixels"]:
@@ -35,8 +39,10 @@ class Retina(nn.Module):
 
         G_acuity [ Y / (s + floor · ⟨s⟩) ],   s² = G_pool ⟨Y²⟩ over rows and colours,
 
-    where G_σ blurs around the ring with a Gaussian of σ columns. The gain control makes turning and walking
-    move the output in orthogonal directions, whatever fills the view. Fixed: nothing is learnt here.
+    where G_σ blurs along azimuth with a Gaussian of σ columns: around the ring of a panorama, or, without
+    `wrap`, up to the borders of a picture, where what would lie beyond weighs nothing. The gain control makes
+    turning and walking move the output of a panorama in orthogonal directions, whatever fills the view.
+    Fixed: nothing is learnt here.
 
     Parameters
     ----------
@@ -46,6 +52,8 @@ class Retina(nn.Module):
         Receptors; 90 columns are 4° each.
     acuity, surround, pool
         Blurs in columns.
+    wrap
+        Whether the last column continues in the first, as in a panorama.
     floor
         Fraction of the mean contrast added to the local one, so that an empty wall is not amplified to noise.
     faintest
@@ -73,12 +81,13 @@ class Retina(nn.Module):
         pool: float = 2.0,
         floor: float = 0.1,
         faintest: float = 0.002,
+        wrap: bool = True,
     ) -> None:
         super().__init__()
         if height < rows or width < columns:
             raise NeuronsError(
                 f"views are {height}×{width} pixels; the retina needs at least {rows}×{columns}: "
-                "record with a larger panoramic camera"
+                "record with a larger camera"
             )
         self.features = rows * 3 * columns
         self.floor, self.faintest = floor, faintest
@@ -89,13 +98,13 @@ class Retina(nn.Module):
         )
         down, across = self.block
         # both blurs in one matrix, as their difference is linear: one product per view
-        blur = _circular_gaussian(columns, acuity)
-        differences = blur - _circular_gaussian(columns, surround)
+        blur = _gaussian(columns, acuity, wrap=wrap)
+        differences = blur - _gaussian(columns, surround, wrap=wrap)
         # not saved with a map: they follow from the size of its views
         self.average: Tensor = nn.Buffer(_area_average(height // down, rows), persistent=False)
         across_mean = _area_average(width // across, columns) / (down * across)
         self.centre_surround: Tensor = nn.Buffer(across_mean.T @ differences, persistent=False)
-        self.pooling: Tensor = nn.Buffer(_circular_gaussian(columns, pool), persistent=False)
+        self.pooling: Tensor = nn.Buffer(_gaussian(columns, pool, wrap=wrap), persistent=False)
         self.blur: Tensor = nn.Buffer(blur, persistent=False)
 
     def forward(self, views: UInt8[Tensor, "views height width 3"]) -> Float[Tensor, "views features"]:

@@ -7,6 +7,8 @@ from typing import Any
 
 from cogmap.evaluation.populations import competing_cells, trust_report
 from cogmap.experiments import Conditions, Result, Trial, experiment, show_cells
+from cogmap.features import VisualSmell
+from cogmap.features.seam import wraps_around
 
 
 @experiment(
@@ -25,6 +27,9 @@ def fusion(conditions: Conditions) -> Result:
     cells; `position_median_m` of `olfaction_only` is read from the raw nose. `in_field_direction_vector` is
     the median over the cells that have a field. `seconds` are those of learning, by stage; `reason` and
     `metric_reason` say why the map is not to be trusted, or lays out no places.
+
+    `visual_smell` is a map whose second sense is made of the same panoramas (`cogmap.features.VisualSmell`),
+    for explorers that have no nose; only eyes that look all around have it.
 
     `competition` is the other control: the same walks, learnt once with smell among what charts compete for
     and once with sight alone there (`CognitiveMap(smell=0)`), here and where one card alone tells four equal
@@ -49,6 +54,7 @@ def fusion(conditions: Conditions) -> Result:
         }
         for item in (trial, *(Trial.of(replace(conditions, room=room)) for room in conditions.extra_rooms))
     }
+    seen_twice = _by_visual_smell(trial)
     return Result(
         {
             "vision_only": alone["vision only"],
@@ -60,6 +66,7 @@ def fusion(conditions: Conditions) -> Result:
                 "metric_reason": cmap.metric_reason_,
                 "seconds": {stage: round(spent, 3) for stage, spent in cmap.seconds_.items()},
             },
+            **seen_twice,
             "competition": competition,
         },
         *show_cells(cells),
@@ -68,6 +75,18 @@ def fusion(conditions: Conditions) -> Result:
 
 def _without_smell(conditions: Conditions) -> Conditions:
     return replace(conditions, map={**conditions.map, "smell": 0.0})
+
+
+def _by_visual_smell(trial: Trial) -> dict[str, Any]:
+    """Learn once more with a second sense made of the views; nothing where these do not look all around."""
+    if not wraps_around(trial.walk.views):
+        return {}
+    smell = VisualSmell()
+    walk, fresh = (
+        replace(item, odours=give(item.views))
+        for item, give in ((trial.walk, smell.fit_transform), (trial.fresh, smell.transform))
+    )
+    return {"visual_smell": _figures(replace(trial, walk=walk, fresh=fresh))}
 
 
 def _figures(trial: Trial) -> dict[str, Any]:
