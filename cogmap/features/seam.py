@@ -40,10 +40,10 @@ def wraps_around(views: Any) -> bool:
 
 
 def seam_is_open(views: Any) -> bool:
-    """Tell whether views are clearly of an eye with borders: neighbouring columns change alike, but the last
-    and the first do not.
+    """Tell whether views are clearly of an eye with borders.
 
-    Not the opposite of `wraps_around`: of views that are all the same, or of noise, neither is so.
+    Neighbouring columns change alike, but the last and the first do not. Not the opposite of `wraps_around`:
+    of views that are all the same, or of noise, neither is so.
 
     Parameters
     ----------

@@ -18,11 +18,12 @@ from numpy.typing import ArrayLike
 from torch import Tensor
 from tqdm import tqdm
 
-from cogmap.errors import CogmapError, OpenSeamWarning, UntrustedMapWarning
-from cogmap.inputs import check_choice, check_views, checked_count, log_odours
+from cogmap.errors import CogmapError, UntrustedMapWarning
+from cogmap.inputs import check_views, checked_count, log_odours
 from cogmap.map.activity import Activity
 from cogmap.map.device import checked_device
 from cogmap.map.diagnosis import Counted, Diagnosis, Verdict, topology_verdict
+from cogmap.map.eyes import RETINAS, found_eye
 from cogmap.map.storage import read_state, write_state
 from cogmap.threads import in_order, one_thread
 from neurons.angles import mean_angle
@@ -38,11 +39,6 @@ if TYPE_CHECKING:
 
 BATCH = 256
 """Views learnt together; fixed, so that the same seed gives the same map."""
-EYES: Mapping[str, Mapping[str, Any]] = {
-    "panorama": {},
-    "perspective": {"wrap": False, "columns": 45, "acuity": 5.0, "surround": 15.0, "pool": 4.0},
-}
-"""Retinas that suit them."""
 RELAXED = "relaxed_places."
 """How what `refine` has learnt is called among the weights of a saved map."""
 
@@ -56,9 +52,9 @@ class CognitiveMap:
     cells. Where views come in the order of a walk, it also learns where places lie, as a metric map, and
     takes a slow offset out of heading; shuffled views do no harm, but teach neither.
 
-    The second sense may be any that knows place but not heading. Without one it is a map still: `encode` gives
-    the space of the view manifold, to localise, plan and count holes in, and `dimension_` its degrees of
-    freedom. But nothing then tells place from heading, so that both populations are silent, and `reason_`
+    The second sense may be any that knows place but not heading. Without one it is a map still: `encode`
+    gives the space of the view manifold, to localise, plan and count holes in, and `dimension_` its degrees
+    of freedom. But nothing then tells place from heading, so that both populations are silent, and `reason_`
     says so.
 
     Parameters
@@ -148,7 +144,7 @@ class CognitiveMap:
                 f"there are {views.shape[0]} views for {self.charts} charts; "
                 "record more views or use fewer charts: about a fifth as many as views"
             )
-        self._begin(tuple(views.shape[1:]), logs.shape[1], self._found_eye(views), epoch=views.shape[0])
+        self._begin(tuple(views.shape[1:]), logs.shape[1], found_eye(self.eye, views), epoch=views.shape[0])
         network, count, smells = self._network, views.shape[0], self._here(logs)
         order = np.random.default_rng(self.seed)
         with one_thread(self._device), tqdm(total=network.epochs, unit="epoch", disable=not progress) as bar:
@@ -186,8 +182,8 @@ class CognitiveMap:
         Parameters
         ----------
         views, odours
-            As for `fit`, in the order of a walk if there is one. The first views tell the eye, and whether there
-            are odours.
+            As for `fit`, in the order of a walk if there is one. The first views tell the eye, and whether
+            there are odours.
         jump
             Whether these views do not follow the last ones, as where another walk begins.
         """
@@ -196,7 +192,7 @@ class CognitiveMap:
         logs = self._smelt(odours, views.shape[0], None if fresh else self.odorants_)
         if fresh:
             epoch = checked_count("epoch", self.epoch)
-            self._begin(tuple(views.shape[1:]), logs.shape[1], self._found_eye(views), epoch=epoch)
+            self._begin(tuple(views.shape[1:]), logs.shape[1], found_eye(self.eye, views), epoch=epoch)
         if jump:
             self._network.break_sequence()
         with one_thread(self._device):
@@ -460,7 +456,7 @@ class CognitiveMap:
         if not 0 <= self.smell < np.inf:
             raise CogmapError(f"smell is {self.smell!r}; give a number of at least 0, how much it counts")
         self._device = checked_device(self.device)
-        self._retina = Retina(*view_shape[:2], **EYES[eye]).to(self._device)
+        self._retina = Retina(*view_shape[:2], **RETINAS[eye]).to(self._device)
         self.view_shape_, self.odorants_, self.eye_ = view_shape, odorants, eye
         self.seconds_: dict[str, float] = {}
         self.relaxed_places_ = None
@@ -491,8 +487,8 @@ class CognitiveMap:
             return np.empty((views, 0), np.float32)
         if odorants == 0:
             raise CogmapError(
-                f"this map was begun by sight alone, and now gets odours of shape {np.shape(odours)}; give none, "
-                "or begin another map with both"
+                f"this map was begun by sight alone, and now gets odours of shape {np.shape(odours)}; "
+                "give none, or begin another map with both"
             )
         return log_odours(odours, views=views, odorants=odorants)
 
@@ -500,32 +496,14 @@ class CognitiveMap:
         if not self.odorants_:
             raise CogmapError(f"this map knows no odours: {self._grown.noseless}")
 
-    def _found_eye(self, views: Any) -> str:
-        """Take the eye that was told, or tell it from views."""
-        # what compares features of views is heavy, and who perceives by a saved map waits for none of it
-        from cogmap.features.seam import seam_is_open  # noqa: PLC0415
-
-        open_seam = seam_is_open(views)
-        if self.eye is None:
-            return "perspective" if open_seam else "panorama"
-        check_choice("eye", self.eye, tuple(EYES))
-        if self.eye == "panorama" and open_seam:
-            warnings.warn(
-                "views are said to be panoramas, but their last column does not continue in the first; "
-                "look at one, or give eye='perspective'",
-                OpenSeamWarning,
-                stacklevel=3,
-            )
-        return self.eye
-
     @property
     def _sees_alone(self) -> str:
         """Why holes that sight alone counts are not those of the room for sure; empty with a second sense."""
         if self.odorants_:
             return ""
         return (
-            "by sight alone places that look alike are one, and no count of its loops can tell; give a second "
-            "sense, or count those of `encode` where nothing looks alike"
+            "by sight alone places that look alike are one, and no count of its loops can tell; give a "
+            "second sense, or count those of `encode` where nothing looks alike"
         )
 
     @property
@@ -560,7 +538,7 @@ class CognitiveMap:
         return place, heading, phase, recalled.odour, position
 
     def _unsensed(self, count: int) -> Activity:
-        """What a map that has no second sense says of so many views: nothing."""
+        """Say of so many views what a map without a second sense can say: nothing."""
         cells = self.place_cells + self.heading_cells
         blind = np.full((count, cells + 3), np.nan, np.float32)
         place, heading, phase, position = np.split(blind, [self.place_cells, cells, cells + 1], axis=1)

@@ -28,10 +28,10 @@ def field_of_view(
     far from the true pose fresh views are that are placed by the nearest code, and among codes by affine
     weights (`localised`); both populations; and whether the map is to be trusted.
 
-    Walking shifts the picture of a perspective eye as turning does, and by how much depends on where it looks.
-    So what the charts take for turning, the direction in which smell stays the same, is right in each chart
-    but no angle: its integral around a place is off by a few tens of degrees and closes all the same, so that
-    no agreement of charts can tell.
+    Walking shifts the picture of a perspective eye as turning does, and by how much depends on where it
+    looks. So what the charts take for turning, the direction in which smell stays the same, is right in each
+    chart but no angle: its integral around a place is off by some ten degrees and closes all the same, so
+    that no agreement of charts can tell.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def _measured(trial: Trial) -> dict[str, Any]:
     location = Localiser(train, metric="euclidean").locate(fresh)
     placed = {"nearest_": truth[location.indices[:, 0]], "localised_": interpolated_poses(location, truth)}
     return {
-        "eye": cmap.eye_,
+        "eye_found": cmap.eye_,
         "dimension": cmap.dimension_,
         "dimension_vote": cmap.vote_,
         "betti": list(holes.numbers),

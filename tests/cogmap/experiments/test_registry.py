@@ -33,7 +33,7 @@ KEYS = {
     "localisation": {"position_median_m", "heading_median_deg", "nearest_position_median_m", "placed"},
     "roadmap": {"success", "length_ratio_median", "paths_touching", "deviation_mean", "query_ms"},
     "distinguishability": {"confusion_white", "confusion_blue_wall", "betti_white", "betti_blue_wall"},
-    "fusion": {"vision_only", "olfaction_only", "fused", "competition"},
+    "fusion": {"vision_only", "olfaction_only", "fused", "visual_smell", "competition"},
     "odour_ablation": {
         "1_sources_0.1_noise",
         "4_sources_0.1_noise",

@@ -3,7 +3,7 @@ import pytest
 
 from arena import Arena, Camera
 from cogmap.errors import CogmapError
-from cogmap.features.seam import wraps_around
+from cogmap.features.seam import seam_is_open, wraps_around
 
 ROOM = Arena.load("furnished")
 
@@ -35,3 +35,17 @@ def test_still_background_is_no_seam() -> None:
 def test_what_are_no_images() -> None:
     with pytest.raises(CogmapError, match="give uint8 images"):
         wraps_around(np.zeros((3, 4, 5)))
+
+
+def test_what_has_a_seam_that_is_clearly_open() -> None:
+    views = Camera.panoramic(90, 15).render(ROOM, poses(200))
+    assert not seam_is_open(views)
+    assert seam_is_open(views[:, :, :60])
+    assert seam_is_open(Camera.perspective(64, 48).render(ROOM, poses(200)))
+
+
+def test_of_noise_and_of_still_views_neither_is_so() -> None:
+    noise = np.random.default_rng(3).integers(0, 256, size=(50, 15, 90, 3)).astype(np.uint8)
+    still = np.repeat(Camera.perspective(64, 48).render(ROOM, poses(1)), 20, axis=0)
+    for views in (noise, still):
+        assert not seam_is_open(views)

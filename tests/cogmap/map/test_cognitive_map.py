@@ -12,11 +12,13 @@ import pytest
 import torch
 
 from arena import Arena, Brownian, Camera, Recording, explore
-from cogmap import Activity, CogmapError, CognitiveMap, UntrustedMapWarning, score
+from cogmap import Activity, CogmapError, CognitiveMap, OpenSeamWarning, UntrustedMapWarning, score
+from cogmap.cells import decode_positions
 from cogmap.map import topology
 from cogmap.map.cognitive_map import BATCH
 from cogmap.map.diagnosis import topology_verdict
 from neurons.circuit import Circuit
+from neurons.errors import NeuronsError
 from neurons.network import Network
 from neurons.stages import STAGES, Batch, StripStage, chosen, joined
 from tests.cogmap.conftest import Refined
@@ -312,6 +314,70 @@ def test_bad_input_is_refused(walk: Recording, cmap: CognitiveMap) -> None:
         cmap.perceive(views, odours=odours[:-1])
     with pytest.raises(CogmapError, match="learnt nothing"):
         CognitiveMap().perceive(views)
+
+
+def test_sight_alone_is_a_map_without_populations(
+    walk: Recording, cmap: CognitiveMap, tmp_path: Path
+) -> None:
+    alone = CognitiveMap(charts=400, components=20).fit(walk.views)
+    assert alone.odorants_ == 0
+    assert alone.dimension_ == 3
+    np.testing.assert_allclose(
+        alone.encode(walk.views[:50]).std(), cmap.encode(walk.views[:50]).std(), rtol=0.3
+    )
+    assert not alone.trusted_
+    assert "need a second sense" in alone.reason_
+    assert "need a second sense" in alone.metric_reason_
+    told = alone.diagnosis()
+    for verdict in (told.heading, told.place, told.metric_map):
+        assert "sense" in verdict.reason
+    assert "look alike are one" in told.topology.reason
+    with pytest.warns(UntrustedMapWarning, match="second sense"):
+        act = alone.perceive(walk.views[:7])
+    assert (act.place.shape, act.heading.shape, act.phase.shape) == ((7, 150), (7, 60), (7,))
+    assert (act.odour.shape, act.position.shape) == ((7, 0), (7, 2))
+    for silent in (act.place, act.heading, act.phase, act.position):
+        assert np.isnan(silent).all()
+    alone.save(tmp_path / "map")
+    again = CognitiveMap.load(tmp_path / "map")
+    np.testing.assert_array_equal(again.encode(walk.views[:9]), alone.encode(walk.views[:9]))
+    assert (again.reason_, again.eye_) == (alone.reason_, "panorama")
+    with pytest.raises(CogmapError, match="knows no odours"):
+        alone.perceive(odours=walk.odours[:7])
+    with pytest.raises(CogmapError, match="knows no odours"):
+        alone.perceive(walk.views[:7], odours=walk.odours[:7])
+    with pytest.raises(CogmapError, match="begun by sight alone"):
+        alone.partial_fit(walk.views[:7], walk.odours[:7])
+    with pytest.raises(CogmapError, match="there are no odours"):
+        cmap.partial_fit(walk.views[:7])
+
+
+def test_a_stream_of_sight_alone_ends_with_its_charts(walk: Recording) -> None:
+    cmap = CognitiveMap(charts=100, components=10, epoch=300)
+    for _ in range(9):
+        cmap.partial_fit(walk.views[:300])
+    assert "'charts' stage" in cmap.reason_
+    cmap.partial_fit(walk.views[:300]).partial_fit(walk.views[:100])
+    assert "second sense" in cmap.reason_
+    assert cmap.dimension_ > 0
+
+
+def test_eyes_with_borders_have_maps(tmp_path: Path) -> None:
+    seen = explore(Arena.load("furnished"), Brownian(), Camera.perspective(64, 48), views=1500, seed=0)
+    cmap = CognitiveMap(charts=300, components=20).fit(seen.views, seen.odours)
+    assert cmap.eye_ == "perspective"
+    assert cmap.dimension_ in {2, 3}
+    cmap.save(tmp_path / "map")
+    assert CognitiveMap.load(tmp_path / "map").eye_ == "perspective"
+    with pytest.warns(UntrustedMapWarning):
+        act = cmap.perceive(seen.views)
+    read = decode_positions(act.odour[::2], seen.poses[::2, :2], act.odour[1::2])
+    assert np.median(np.linalg.norm(read - seen.poses[1::2, :2], axis=1)) < 0.35
+    told = CognitiveMap(charts=300, components=20, eye="panorama")
+    with pytest.raises(CogmapError, match="choose one of panorama, perspective"):
+        CognitiveMap(charts=300, eye="fisheye").fit(seen.views, seen.odours)
+    with pytest.warns(OpenSeamWarning), pytest.raises(NeuronsError, match="record with a larger camera"):
+        told.fit(seen.views, seen.odours)
 
 
 def grown(walk: Recording, *, split: int | None, folder: Path) -> CognitiveMap:

@@ -107,3 +107,36 @@ def test_batches_do_not_matter() -> None:
 def test_too_few_pixels(height: int, width: int) -> None:
     with pytest.raises(NeuronsError, match=f"{height}×{width}.*at least 15×90"):
         Retina(height, width)
+
+
+def up_to_the_borders(strip: np.ndarray, sigma: float) -> np.ndarray:
+    """Blur, and divide by the blur of ones: what lies beyond weighs nothing."""
+    blur = lambda line: gaussian_filter1d(line, sigma, axis=-1, mode="constant", radius=90)  # noqa: E731
+    return blur(strip) / blur(np.ones_like(strip))
+
+
+def test_without_wrap_nothing_is_seen_beyond_the_borders() -> None:
+    retina = Retina(30, 200, columns=50, acuity=2.0, surround=8.0, pool=3.0, wrap=False)
+    views = scenes(3, 30, 200)
+    strips = retina(views).numpy()
+    small = np.stack(
+        [
+            cv2.resize(view.astype(np.float64), (50, 15), interpolation=cv2.INTER_AREA)
+            for view in views.numpy()
+        ]
+    )
+    for strip, view in zip(strips, small, strict=True):
+        colours = view.transpose(0, 2, 1).reshape(45, 50)
+        centre = up_to_the_borders(colours, 2.0) - up_to_the_borders(colours, 8.0)
+        contrast = np.sqrt(up_to_the_borders((centre**2).mean(axis=0), 3.0))
+        trusted = up_to_the_borders(centre / (contrast + 0.1 * contrast.mean() + 0.002), 2.0)
+        np.testing.assert_allclose(strip, trusted.ravel(), atol=2e-3)
+    moved = views.clone()
+    moved[:, :, 160:] = 0
+    left = retina(moved).unflatten(1, (15, 3, 50))[..., :4]
+    around = Retina(30, 200, columns=50, acuity=2.0, surround=8.0, pool=3.0)
+    assert (left - retina(views).unflatten(1, (15, 3, 50))[..., :4]).abs().max() < 0.2
+    there = (
+        around(moved).unflatten(1, (15, 3, 50))[..., :4] - around(views).unflatten(1, (15, 3, 50))[..., :4]
+    )
+    assert there.abs().max() > 0.5

@@ -41,6 +41,14 @@ def test_both_give_both(metrics: dict[str, Any]) -> None:
     assert 2 * fused["position_median_m"] < fused["nose_position_median_m"]
 
 
+def test_a_smell_made_of_panoramas_does_as_well(metrics: dict[str, Any]) -> None:
+    seen = metrics["visual_smell"]
+    assert seen["place_cells_passing"] > 0.7
+    assert seen["heading_cells_passing"] > 0.8
+    assert seen["position_median_m"] < 0.1
+    assert seen["heading_median_deg"] < 5
+
+
 def test_smell_competes_or_does_not_on_the_same_walks(metrics: dict[str, Any]) -> None:
     assert metrics["competition"].keys() == {"furnished"}
     told = metrics["competition"]["furnished"]
