@@ -94,9 +94,10 @@ class Beside(NamedTuple):
                     f"there are {len(self.times)} times for {count} pictures; give one a picture"
                 )
             return self.times, "given"
-        if self.rate is not None or rate is not None:
-            every = np.arange(count) / (self.rate or rate)
-            return every, "rate" if self.rate is not None else "video"
+        if self.rate is not None:
+            return np.arange(count) / self.rate, "rate"
+        if rate is not None:
+            return np.arange(count) / rate, "video"
         for table in (self.signals, self.poses):
             if table is not None and table.times is not None and len(table) == count:
                 return table.times, table.label
@@ -151,7 +152,8 @@ def _rows(table: Table, name: str, clock: Row | None, count: int, *, angle: bool
             f"pictures, which go from {wanted[0]:g} to {wanted[-1]:g} s, are taken outside; give both the "
             "same clock, or leave those pictures out"
         )
-    return np.interp(wanted, times, np.unwrap(values[known]) if angle else values[known])
+    found: np.ndarray = np.interp(wanted, times, np.unwrap(values[known]) if angle else values[known])
+    return found
 
 
 def _odours(label: str, signals: dict[str, Row], *, log: bool) -> Float32[np.ndarray, "views odorants"]:
@@ -187,8 +189,8 @@ def _poses(table: Table, clock: Row | None, count: int) -> Float64[np.ndarray, "
     lacking = [name for name in POSE if name not in columns]
     if lacking:
         raise ArenaError(
-            f"{table.label} has no column {' and no '.join(lacking)}; it must have x, y (m) and heading (rad) "
-            "or heading_deg"
+            f"{table.label} has no column {' and no '.join(lacking)}; it must have x, y (m) and heading "
+            "(rad) or heading_deg"
         )
     whole = table._replace(columns=columns)
     x, y = (_rows(whole, name, clock, count) for name in ("x", "y"))

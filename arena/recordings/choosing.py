@@ -44,7 +44,7 @@ def one(key: Any, count: int) -> int | None:
         Past either end.
     """
     # Of True and of a row of one value, too, `index` makes a number.
-    if isinstance(key, bool | np.bool_) or getattr(key, "ndim", 0) or not isinstance(key, SupportsIndex):
+    if isinstance(key, bool | np.bool_) or getattr(key, "ndim", None) or not isinstance(key, SupportsIndex):
         return None
     try:
         number = operator.index(key)

@@ -59,4 +59,5 @@ def _levels(values: np.ndarray, label: str) -> UInt8[np.ndarray, "height width c
             f"{label} has values from {low:g} to {high:g}; floats go from 0 (black) to 1 (white): divide "
             "them, or make them uint8"
         )
-    return np.rint(np.clip(values, 0, 1) * 255).astype(np.uint8)
+    levels: np.ndarray = np.rint(np.clip(values, 0, 1) * 255).astype(np.uint8)
+    return levels

@@ -65,8 +65,8 @@ class Pictures(NamedTuple):
 
     described: dict[str, Any]
     """What can be told of them, but their content; by it a source that has changed is known."""
-    count: int | None
-    """None when only going through them tells."""
+    number: int | None
+    """How many; None when only going through them tells."""
     rate: float | None
     """Frames a second, of a video that says it."""
     items: Callable[[], Iterator[Item]]

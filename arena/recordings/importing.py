@@ -3,34 +3,31 @@
 import json
 import shutil
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import chain, count, islice
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 import cv2
 import google_crc32c
 import numba
 import numpy as np
 from jaxtyping import UInt8
-from tqdm import tqdm
 
 from arena.atomic import atomic_write, sync
 from arena.errors import ArenaError
 from arena.recordings import storage
 from arena.recordings.beside import Beside
-from arena.recordings.colours import Picture
+from arena.recordings.developing import Darkroom, in_order, opened
 from arena.recordings.images import Item, Pictures
-from arena.recordings.lens import Lens, Look
+from arena.recordings.lens import Lens
 from arena.recordings.resuming import refuse_another
-from arena.recordings.sharding import SHARD, encoded, is_complete, write_frames
+from arena.recordings.sharding import SHARD, is_complete, write_frames
 
 BEGUN = "begun.json"
 """File in a folder that is not a recording yet: what is being imported, and how far it is."""
-
-T = TypeVar("T")
 
 
 class Imported(NamedTuple):
@@ -49,12 +46,12 @@ def import_to_memory(pictures: Pictures, lens: Lens, beside: Beside, *, progress
     ArenaError
         For pictures or tables that cannot be read or do not go together.
     """
-    darkroom, items = _opened(pictures, lens, beside, progress=progress)
+    darkroom, items = opened(pictures, lens, beside, progress=progress)
     with ThreadPoolExecutor(numba.get_num_threads()) as pool:
-        made = (view for _, view in _in_order(pool, darkroom.develop, items))
+        made = (view for _, view in in_order(pool, darkroom.develop, items))
         # As they come: a list of all, and their array, would be there at once.
         kind = np.dtype((np.uint8, darkroom.shape))
-        views = np.fromiter(made, kind, -1 if pictures.count is None else pictures.count)
+        views = np.fromiter(made, kind, -1 if pictures.number is None else pictures.number)
     columns, notes = beside.matched(len(views), pictures.rate)
     attributes = {
         **_described(pictures, lens),
@@ -79,7 +76,7 @@ def import_to_disk(
         For pictures or tables that cannot be read or do not go together, for an import that was begun of
         others or by another lens, for anything else at the path, and when it cannot be written.
     """
-    darkroom, items = _opened(pictures, lens, beside, progress=progress)
+    darkroom, items = opened(pictures, lens, beside, progress=progress)
     wanted = _described(pictures, lens)
     begun = _Begun.at(path, wanted)
     try:
@@ -90,7 +87,7 @@ def import_to_disk(
         if begun.whole is None:
             _finish(path, (views, *darkroom.shape), columns, attributes)
         elif not _equal(begun.whole, columns, attributes):
-            refuse_another(path, {"tables": "those there"}, {"tables": "these"})
+            refuse_another(path, {"table beside it": "that"}, {"table beside it": "this"})
     except OSError as error:
         raise ArenaError(
             f"cannot write {path}: {error.strerror or error}; what is written is kept, and the same command "
@@ -151,55 +148,6 @@ class _Begun(NamedTuple):
         return begun
 
 
-@dataclass(frozen=True)
-class _Darkroom:
-    """Makes views of pictures, which must all have the size of the first."""
-
-    first: str
-    size: tuple[int, int]
-    look: Look
-    shape: tuple[int, int, int]
-    """Of a view."""
-    camera: dict[str, Any]
-
-    def develop(self, item: Item) -> tuple[int, Picture]:
-        """Give a checksum of what a picture is made from, and its view."""
-        checksum, picture = item.read()
-        if picture.shape[:2] != self.size:
-            (height, width), (rows, columns) = picture.shape[:2], self.size
-            raise ArenaError(
-                f"{item.label} has {width}×{height} pixels and {self.first} {columns}×{rows}; "
-                "all must be of one size: resize it, or leave it out"
-            )
-        return checksum, self.look(picture)
-
-    def pack(self, item: Item) -> tuple[int, bytes]:
-        """Give a checksum of what a picture is made from, and its view as it stands in a shard."""
-        checksum, view = self.develop(item)
-        return checksum, encoded(view)
-
-
-def _opened(
-    pictures: Pictures, lens: Lens, beside: Beside, *, progress: bool
-) -> tuple[_Darkroom, Iterator[Item]]:
-    """Look at the first picture, and refuse before anything is made what can be refused by then."""
-    if pictures.count is not None:
-        beside.matched(pictures.count, pictures.rate)
-    items = pictures.items()
-    first = next(items, None)
-    if first is None:
-        raise ArenaError("there are no pictures: the source ends before the first; give at least one")
-    picture = first.read()[1]
-    height, width = picture.shape[:2]
-    look = lens.fitted(height, width)
-    rows, columns, colours = look(picture).shape
-    darkroom = _Darkroom(
-        first.label, (height, width), look, (rows, columns, colours), lens.camera(rows, columns)
-    )
-    all_items = chain([first], items)
-    return darkroom, iter(tqdm(all_items, total=pictures.count, unit="view", disable=not progress))
-
-
 def _described(pictures: Pictures, lens: Lens) -> dict[str, Any]:
     """Tell of what must stay the same for an import to go on, as it will read back from JSON."""
     told = {"source": pictures.described, "lens": lens.model_dump(), "opencv": cv2.__version__}
@@ -208,7 +156,7 @@ def _described(pictures: Pictures, lens: Lens) -> dict[str, Any]:
 
 
 def _stream(
-    path: Path, begun: _Begun, wanted: dict[str, Any], darkroom: _Darkroom, items: Iterator[Item]
+    path: Path, begun: _Begun, wanted: dict[str, Any], darkroom: Darkroom, items: Iterator[Item]
 ) -> Iterator[int]:
     """Write shard after shard, or see that they are there; give how many views each has."""
     shards, views, folder = begun.shards, begun.views, path / "views"
@@ -223,9 +171,9 @@ def _stream(
             rows = slice(first, first + SHARD if known is None else min(first + SHARD, views))
             sum_ = _Sum(path, known)
             if known is not None and is_complete(folder, rows):
-                deque(sum_.over(_in_order(pool, _checked, here)), maxlen=0)
+                deque(sum_.over(in_order(pool, _checked, here)), maxlen=0)
             else:
-                write_frames(folder, rows, sum_.over(_in_order(pool, darkroom.pack, here)))
+                write_frames(folder, rows, sum_.over(in_order(pool, darkroom.pack, here)))
             if known is None:
                 shards.append(sum_.checksum)
                 views += sum_.views
@@ -270,18 +218,6 @@ def _some(items: Iterator[Item], most: int) -> Iterator[Item] | None:
     """Give the next items, not more than so many; None when there are none."""
     first = next(items, None)
     return None if first is None else chain([first], islice(items, most - 1))
-
-
-def _in_order(pool: ThreadPoolExecutor, work: Callable[[Item], T], items: Iterable[Item]) -> Iterator[T]:
-    """Work on items in threads, a few ahead of what is asked for, which comes in order."""
-    waiting = deque[Future[T]]()
-    for item in items:
-        waiting.append(pool.submit(work, item))
-        del item  # or the picture would stay until the next one is there
-        if len(waiting) > 2 * numba.get_num_threads():
-            yield waiting.popleft().result()
-    while waiting:
-        yield waiting.popleft().result()
 
 
 class _SourceFailedError(Exception):

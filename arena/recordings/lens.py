@@ -142,7 +142,8 @@ class Lens(Settings):
     def _turns(self, columns: int) -> Float[np.ndarray, " columns"]:
         """Give where the columns look in the picture, rad to the right of its centre column."""
         right = ((np.arange(columns) + 0.5) / columns - 0.5) * 2 * np.pi
-        return np.deg2rad(self.ahead) + (right if self.clockwise else -right)
+        turns: np.ndarray = np.deg2rad(self.ahead) + (right if self.clockwise else -right)
+        return turns
 
     def _on_sphere(self, height: int, width: int, rows: int, columns: int) -> tuple[Coordinates, Coordinates]:
         """Say where in an equirectangular picture each pixel of a cylinder looks."""
