@@ -98,9 +98,9 @@ class Beside(NamedTuple):
             return np.arange(count) / self.rate, "rate"
         if rate is not None:
             return np.arange(count) / rate, "video"
-        for table in (self.signals, self.poses):
+        for name, table in {"signals": self.signals, "poses": self.poses}.items():
             if table is not None and table.times is not None and len(table) == count:
-                return table.times, table.label
+                return table.times, name
         return None, "one a second, as nothing tells"
 
 
@@ -178,14 +178,17 @@ def _odours(label: str, signals: dict[str, Row], *, log: bool) -> Float32[np.nda
 def _poses(table: Table, clock: Row | None, count: int) -> Float64[np.ndarray, "views 3"]:
     """Give x, y (m) and heading (rad) of every picture."""
     columns = dict(table.columns)
-    if "heading_deg" in columns and "heading" not in columns:
+    if {"heading", "heading_deg"} <= columns.keys():
+        raise ArenaError(f"{table.label} has both heading and heading_deg; leave one of them out")
+    if "heading_deg" in columns:
         columns["heading"] = np.deg2rad(columns["heading_deg"])
-    elif np.nanmax(np.abs(columns.get("heading", np.zeros(1))), initial=0) > 2 * np.pi + 1e-6:
-        most = np.nanmax(np.abs(columns["heading"]))
-        raise ArenaError(
-            f"{table.label}: heading goes to {most:g}, which is more than a turn; call the column "
-            "heading_deg if these are degrees, or wrap it into (−π, π]"
-        )
+    elif "heading" in columns:
+        most = np.abs(columns["heading"][np.isfinite(columns["heading"])]).max(initial=0)
+        if most > 2 * np.pi + 1e-6:
+            raise ArenaError(
+                f"{table.label}: heading goes to {most:g}, which is more than a turn; call the column "
+                "heading_deg if these are degrees, or wrap it into (−π, π]"
+            )
     lacking = [name for name in POSE if name not in columns]
     if lacking:
         raise ArenaError(

@@ -33,7 +33,7 @@ def as_rgb(picture: Any, label: str) -> Picture:
     if values.ndim == 2:
         values = values[..., None]
     if values.ndim != 3 or values.shape[2] not in {1, 3, 4} or not values.size:
-        first = values.ndim == 3 and values.shape[0] in {1, 3, 4}
+        first = values.ndim == 3 and values.shape[0] in {1, 3, 4} and values.shape[2] > 4
         there = "transpose it: its colours come first" if first else "(height, width), or with 1, 3 or 4 last"
         raise ArenaError(f"{label} is of shape {np.shape(picture)}; {there}")
     levels = _levels(values[..., :3], label)

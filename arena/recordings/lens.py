@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, get_args
 
 import cv2
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, UInt8
 from pydantic import Field
 
 from arena.errors import ArenaError
@@ -15,7 +15,8 @@ from arena.settings import Settings
 
 Kind = Literal["equirectangular", "cylindrical", "mirror", "perspective"]
 Coordinates = Float[np.ndarray, "height width"]
-Look = Callable[[Picture], Picture]
+View = UInt8[np.ndarray, "rows columns 3"]
+Look = Callable[[Picture], View]
 _Pixels = Annotated[int, Field(gt=0, le=8192)]
 
 
@@ -125,7 +126,7 @@ class Lens(Settings):
             shift, order = round(self.ahead / 360 * width), np.arange(width)
             turned = ((order if self.clockwise else order[::-1]) + shift) % width
 
-        def look(picture: Picture) -> Picture:
+        def look(picture: Picture) -> View:
             return _by_area(picture if turned is None else picture[:, turned], rows, columns)
 
         return look
@@ -183,14 +184,14 @@ def _looked_up(at: tuple[Coordinates, Coordinates], times: int, border: int) -> 
     maps = cv2.convertMaps((x - 0.5).astype(np.float32), (y - 0.5).astype(np.float32), cv2.CV_16SC2)
     rows, columns = x.shape[0] // times, x.shape[1] // times
 
-    def look(picture: Picture) -> Picture:
+    def look(picture: Picture) -> View:
         fine = cv2.remap(picture, *maps, cv2.INTER_LINEAR, borderMode=border)
         return _by_area(np.asarray(fine), rows, columns)
 
     return look
 
 
-def _by_area(picture: Picture, rows: int, columns: int) -> Picture:
-    if picture.shape[:2] != (rows, columns):
-        picture = np.asarray(cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_AREA))
-    return np.ascontiguousarray(picture)
+def _by_area(picture: Picture, rows: int, columns: int) -> View:
+    if picture.shape[:2] == (rows, columns):
+        return np.ascontiguousarray(picture)
+    return np.asarray(cv2.resize(picture, (columns, rows), interpolation=cv2.INTER_AREA))
