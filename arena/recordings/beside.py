@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Collection
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, SupportsFloat
 
 import numpy as np
 from jaxtyping import Float32, Float64
@@ -31,7 +31,7 @@ class Beside(NamedTuple):
         cls,
         *,
         times: Any,
-        rate: float | None,
+        rate: SupportsFloat | None,
         poses: Any,
         signals: Any,
         columns: Collection[str] | None,
@@ -46,15 +46,16 @@ class Beside(NamedTuple):
         """
         if times is not None and rate is not None:
             raise ArenaError("both times and rate are given; choose one")
-        if rate is not None and not (np.isfinite(rate) and rate > 0):
-            raise ArenaError(f"the rate is {rate}; give pictures a second, more than 0")
+        every = None if rate is None else float(rate)
+        if every is not None and not 0 < every < np.inf:
+            raise ArenaError(f"the rate is {every:g}; give pictures a second, more than 0")
         if signals is None and (log or columns is not None):
             raise ArenaError(
                 "log and columns are of signals, and none are given; give signals or leave them out"
             )
         return cls(
             None if times is None else times_of(times),
-            None if rate is None else float(rate),
+            every,
             None if poses is None else table_of(poses, "poses", (*POSE, "heading_deg"), names=POSE),
             None if signals is None else table_of(signals, "signals", columns, needed=columns or ()),
             bool(log),
@@ -99,7 +100,7 @@ class Beside(NamedTuple):
         if rate is not None:
             return np.arange(count) / rate, "video"
         for name, table in {"signals": self.signals, "poses": self.poses}.items():
-            if table is not None and table.times is not None and len(table) == count:
+            if table is not None and table.times is not None and table.rows == count:
                 return table.times, name
         return None, "one a second, as nothing tells"
 
@@ -128,9 +129,9 @@ def _rows(table: Table, name: str, clock: Row | None, count: int, *, angle: bool
         raise ArenaError(f"{label} is infinite in {int(np.isinf(values).sum())} rows; leave them empty")
     known = np.isfinite(values)
     by_time = table.times is not None and clock is not None
-    if not by_time and len(table) != count:
+    if not by_time and table.rows != count:
         raise ArenaError(
-            f"{table.label} has {len(table)} rows for {count} pictures; give one a picture, or a column t (s)"
+            f"{table.label} has {table.rows} rows for {count} pictures; give one a picture, or a column t (s)"
             " there and times or rate of the pictures"
         )
     if known.all() and not by_time:

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, SupportsIndex, overload
+from typing import Any, SupportsFloat, SupportsIndex, overload
 
 import numpy as np
 from jaxtyping import Float32, Float64, Shaped, UInt8
@@ -142,7 +142,7 @@ class Recording:
         clockwise: bool = True,
         mirror: tuple[float, float, float, float] | None = None,
         times: Any = None,
-        rate: float | None = None,
+        rate: SupportsFloat | None = None,
         poses: Any = None,
         signals: Any = None,
         columns: Collection[str] | None = None,

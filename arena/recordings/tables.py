@@ -27,7 +27,9 @@ class Table(NamedTuple):
     columns: dict[str, Float64[np.ndarray, " rows"]]
     """All others, by their names."""
 
-    def __len__(self) -> int:
+    @property
+    def rows(self) -> int:
+        """How many rows there are."""
         return len(next(iter(self.columns.values()))) if self.columns else 0
 
 
@@ -117,7 +119,7 @@ def _times(times: Float64[np.ndarray, " rows"], label: str) -> Float64[np.ndarra
 def _read(path: Path, label: str) -> pd.DataFrame:
     try:
         if path.suffix.lower() in {".parquet", ".pq"}:
-            return pd.read_parquet(path)
+            return pd.read_parquet(io.BytesIO(path.read_bytes()))
         return _delimited(path.read_bytes(), label)
     except OSError as error:
         raise ArenaError(f"cannot read {label}: {error.strerror or str(error).splitlines()[0]}") from None
