@@ -138,7 +138,7 @@ class Recording:
         kind: Kind | None = None,
         width: int | None = None,
         height: int | None = None,
-        ahead: float = 0.0,
+        ahead: SupportsFloat = 0.0,
         clockwise: bool = True,
         mirror: tuple[float, float, float, float] | None = None,
         times: Any = None,

@@ -52,7 +52,7 @@ def table_of(
     what
         What it is for, in errors: "signals".
     only
-        Columns to take, of those there are; None takes all but those without a name, which pandas writes to
+        Columns to take, of those there are, in this order; None takes all but those without a name, which pandas writes to
         count the rows.
     needed
         Columns that there must be.
@@ -76,7 +76,7 @@ def table_of(
     if lacking:
         raise ArenaError(f"{label} has no column {lacking[0]}; it has {', '.join(named)}")
     at = next((name for name in named if name.casefold() in TIMES and name not in (only or ())), None)
-    wanted = [name for name in named if name != at and (only is None or name in only)]
+    wanted = [name for name in (named if only is None else only) if name != at and name in named]
     columns = {name: _numbers(frame[name], name, label) for name in wanted}
     if not len(frame):
         raise ArenaError(f"{label} has no rows; give at least one")

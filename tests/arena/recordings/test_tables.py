@@ -62,6 +62,7 @@ def test_arrays_have_numbered_columns_or_names() -> None:
 def test_missing_values_and_columns_that_are_not_wanted(tmp_path: Path) -> None:
     (tmp_path / "a.csv").write_text("Time,ssid,a,b\n0,x,1,\n1,y,NaN,2\n2,,n/a,3\n")
     table = table_of(tmp_path / "a.csv", "signals", ["b", "a"], needed=["b", "a"])
+    assert list(table.columns) == ["b", "a"]
     np.testing.assert_array_equal(table.columns["a"], [1, np.nan, np.nan])
     np.testing.assert_array_equal(table.columns["b"], [np.nan, 2, 3])
     np.testing.assert_array_equal(table.times, [0, 1, 2])
