@@ -11,6 +11,18 @@ from arena.errors import ArenaError, NoSuchViewError
 
 
 @runtime_checkable
+class WholeNumber(Protocol):
+    """Integers of Python and of numpy; an array has an `__index__`, too, but no denominator."""
+
+    @property
+    def denominator(self) -> int:
+        """1."""
+
+    def __index__(self) -> int:
+        """Turn into an integer of Python."""
+
+
+@runtime_checkable
 class AsArray(Protocol):
     """Arrays and what turns into one: tensors, the series of pandas."""
 

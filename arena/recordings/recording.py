@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, SupportsFloat, SupportsIndex, overload
+from typing import Any, SupportsFloat, overload
 
 import numpy as np
 from jaxtyping import Float32, Float64, Shaped, UInt8
@@ -11,7 +11,7 @@ from jaxtyping import Float32, Float64, Shaped, UInt8
 from arena.errors import ArenaError
 from arena.recordings import choosing, storage
 from arena.recordings.beside import Beside
-from arena.recordings.choosing import Moment, Several
+from arena.recordings.choosing import Moment, Several, WholeNumber
 from arena.recordings.images import pictures_of
 from arena.recordings.importing import import_to_disk, import_to_memory, unfinished
 from arena.recordings.lens import Kind, Lens
@@ -70,12 +70,12 @@ class Recording:
         return int(self.views.shape[0])
 
     @overload
-    def __getitem__(self, key: SupportsIndex) -> Moment: ...
+    def __getitem__(self, key: WholeNumber) -> Moment: ...
 
     @overload
     def __getitem__(self, key: Several) -> "Recording": ...
 
-    def __getitem__(self, key: SupportsIndex | Several) -> "Moment | Recording":
+    def __getitem__(self, key: WholeNumber | Several) -> "Moment | Recording":
         """Give one view by its number, or choose some by a slice, a mask or numbers; all is in memory.
 
         `rec[key].odours` is `rec.odours[key]` whatever the key, and so are all other arrays.

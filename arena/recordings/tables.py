@@ -52,8 +52,8 @@ def table_of(
     what
         What it is for, in errors: "signals".
     only
-        Columns to take, of those there are, in this order; None takes all but those without a name, which pandas writes to
-        count the rows.
+        Columns to take, of those there are, in this order; None takes all but those without a name, which
+        pandas writes to count the rows.
     needed
         Columns that there must be.
     names

@@ -42,8 +42,8 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_pictures_with_all_that_is_beside_them(run) -> None:
     words = ["frames", "--out", "rec.zarr", "--kind", "equirectangular", "--width", 30,
-             "--height", 4, "--ahead", -90, "--times", "t.csv", "--signals", "wifi.csv", "--columns", "ap2", "ap1", "--log",
-             "--poses", "poses.parquet", "--json"]  # fmt: skip
+             "--height", 4, "--ahead", -90, "--times", "t.csv", "--signals", "wifi.csv", "--columns", "ap2",
+             "ap1", "--log", "--poses", "poses.parquet", "--json"]  # fmt: skip
     status, out, err = run(*words)
     assert (status, err) == (0, "")
     assert json.loads(out) == {
