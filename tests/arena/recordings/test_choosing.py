@@ -100,7 +100,7 @@ def test_several_views_are_a_recording(
 
 
 @pytest.mark.parametrize(
-    ("key", "number"), [(5, 5), (-6, -6), (np.int64(99), 99), ([0, 7, 9], 7), (np.array([-6]), -6)]
+    ("key", "number"), [(5, 5), (-6, -6), ([5], 5), (np.int64(99), 99), ([0, 7, 9], 7), (np.array([-6]), -6)]
 )
 def test_past_either_end_is_an_index_error_in_our_words(
     recordings: tuple[Recording, ...], key: Any, number: int
