@@ -39,8 +39,7 @@ def atomic_write(
         path.parent.mkdir(parents=True, exist_ok=True)
         yield fresh
         # Without these the name may reach the disk before the content, and a power cut leaves it empty.
-        for item in (*fresh.rglob("*"), fresh):
-            _sync(item)
+        sync(fresh)
         if not overwrite and os.path.lexists(path):
             raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path))
         if path.is_dir() and fresh.is_dir():
@@ -54,6 +53,12 @@ def atomic_write(
         raise error(f"cannot write {path}: {failed.strerror or failed}") from None
     finally:
         _remove(fresh)
+
+
+def sync(path: Path) -> None:
+    """Wait until a file, or a folder with all that is in it, is on the disk."""
+    for item in (*path.rglob("*"), path):
+        _sync(item)
 
 
 def recover(path: Path) -> None:

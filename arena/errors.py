@@ -3,3 +3,7 @@
 
 class ArenaError(ValueError):
     """Bad input: the message says what was given, what was expected and what to do."""
+
+
+class NoSuchViewError(ArenaError, IndexError):
+    """A view is asked for that a recording does not have."""

@@ -26,6 +26,7 @@ from arena.motions.policy import Policy
 from arena.recordings import storage
 from arena.recordings.origin import origin, unlike
 from arena.recordings.recording import Recording
+from arena.recordings.resuming import refuse_another
 from arena.recordings.sharding import shards, write_shard
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
@@ -165,12 +166,7 @@ def _begun(path: Path, wanted: dict[str, Any]) -> storage.Stored | None:
     if not path.exists():
         return None
     begun = storage.load(path)
-    differing = [key for key in wanted if begun.attributes.get(key) != wanted[key]]
-    if differing:
-        raise ArenaError(
-            f"{path} holds another recording, of a different {' and '.join(differing)}; "
-            "choose another path or remove it first"
-        )
+    refuse_another(path, begun.attributes, wanted)
     return begun
 
 

@@ -1,15 +1,20 @@
 """The recording that an exploration leaves: views and times, and what else was sensed or is known."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, SupportsFloat, overload
 
 import numpy as np
-from jaxtyping import Bool, Float32, Float64, Int, Shaped, UInt8
+from jaxtyping import Float32, Float64, Shaped, UInt8
 
 from arena.errors import ArenaError
-from arena.recordings import storage
+from arena.recordings import choosing, storage
+from arena.recordings.beside import Beside
+from arena.recordings.choosing import Moment, Several, WholeNumber
+from arena.recordings.images import pictures_of
+from arena.recordings.importing import import_to_disk, import_to_memory, unfinished
+from arena.recordings.lens import Kind, Lens
 from arena.recordings.sharding import shards, write_shards
 from arena.recordings.storage import StoredViews
 
@@ -64,12 +69,35 @@ class Recording:
     def __len__(self) -> int:
         return int(self.views.shape[0])
 
-    def __getitem__(
-        self, key: slice | Bool[np.ndarray, " views"] | Int[np.ndarray, " chosen"]
-    ) -> "Recording":
-        """Choose views by a slice, a mask or indices; the result is in memory."""
-        chosen = {name: values[key] for name, values in self._columns.items()}
-        return replace(self, views=self.views[key], **_fields(chosen))
+    @overload
+    def __getitem__(self, key: WholeNumber) -> Moment: ...
+
+    @overload
+    def __getitem__(self, key: Several) -> "Recording": ...
+
+    def __getitem__(self, key: WholeNumber | Several) -> "Moment | Recording":
+        """Give one view by its number, or choose some by a slice, a mask or numbers; all is in memory.
+
+        `rec[key].odours` is `rec.odours[key]` whatever the key, and so are all other arrays.
+
+        Raises
+        ------
+        NoSuchViewError
+            For a number past either end; it is an `IndexError`, too.
+        ArenaError
+            For what chooses no views, and for a mask of another length.
+        """
+        number = choosing.one(key, len(self))
+        if number is None:
+            rows = choosing.several(key, len(self))
+            chosen = {name: values[rows] for name, values in self._columns.items()}
+            return replace(self, views=self.views[rows], **_fields(chosen))
+        found = {name: values[number] for name, values in self._columns.items()}
+        return Moment(**{"views": self.views[number], **dict.fromkeys(_FIELDS), **_fields(found)})
+
+    def __iter__(self) -> Iterator[Moment]:
+        """Go through the views, one at a time from disk."""
+        return (self[number] for number in range(len(self)))
 
     def require(self, name: str) -> np.ndarray:
         """Give an array that a recording may lack: `odours`, `poses`, `commands`, `joints`, `signals/NAME`.
@@ -102,6 +130,81 @@ class Recording:
             write_shards(folder / "views", views)
 
     @classmethod
+    def from_images(
+        cls,
+        source: Any,
+        *,
+        out: str | Path | None = None,
+        kind: Kind | None = None,
+        width: int | None = None,
+        height: int | None = None,
+        ahead: SupportsFloat = 0.0,
+        clockwise: bool = True,
+        mirror: tuple[float, float, float, float] | None = None,
+        times: Any = None,
+        rate: SupportsFloat | None = None,
+        poses: Any = None,
+        signals: Any = None,
+        columns: Collection[str] | None = None,
+        log: bool = False,
+        progress: bool = False,
+    ) -> "Recording":
+        """Make a recording of pictures from any camera, and of what was measured beside them.
+
+        Parameters
+        ----------
+        source
+            A folder of pictures, in natural order; a video; paths; arrays, stacked or one by one; or an
+            iterator of either (`arena.recordings.images.pictures_of`), in grey or colour
+            (`arena.recordings.colours.as_rgb`).
+        out
+            Folder to stream to, 256 views at a time, with a few in memory. The same call after a kill goes on
+            where it stopped and ends with the same bits, and a source or lens that has changed is refused; a
+            recording that is whole is compared with its source and opened. None keeps all in memory.
+        kind, width, height, ahead, clockwise, mirror
+            What the pictures show and what is made of them: `arena.recordings.lens.Lens`.
+        times
+            When they were taken, s, increasing: an array, or a table with a column `t` or only one.
+        rate
+            Pictures a second, in place of times; a video's own unless told, else 1.
+        poses
+            x, y (m), heading (rad) or heading_deg: ground truth, for scoring only. A table or an array.
+        signals
+            A table of what knows place and not heading, whatever it is: strengths of Wi-Fi or Bluetooth
+            stations, gas, temperature, light. All are `odours`, and raw in `signals` by their names, made
+            words.
+        columns
+            Which of them to take; None takes all but times.
+        log
+            Whether signals are decibels: an odour is then 10^(value / 10). Else it is the value.
+        progress
+            Whether to show a bar on stderr.
+
+        Notes
+        -----
+        Tables are as `arena.recordings.tables.table_of` takes them. Where a table has a column of times and
+        the pictures have times or a rate, a picture gets what lies on the line between the rows before and
+        after it; up to one interval past the ends, the end's value. Else rows and pictures are matched one to
+        one and must be as many, and the times of such a table are those of the pictures. Missing values are
+        interpolated over time, if anybody tells it.
+
+        Raises
+        ------
+        ArenaError
+            For pictures or tables that cannot be read or do not go together, and an `out` that holds
+            something else.
+        """
+        pictures = pictures_of(source)
+        lens = Lens(kind=kind, width=width, height=height, ahead=ahead, clockwise=clockwise, mirror=mirror)
+        beside = Beside.read(times=times, rate=rate, poses=poses, signals=signals, columns=columns, log=log)
+        if out is None:
+            views, arrays, attributes = import_to_memory(pictures, lens, beside, progress=progress)
+            return cls(views=views, **_fields(arrays), attributes=attributes)
+        path = Path(out).expanduser()
+        import_to_disk(pictures, lens, beside, path, progress=progress)
+        return cls.open(path)
+
+    @classmethod
     def open(cls, path: str | Path) -> "Recording":
         """Open a recording on disk, leaving the views there.
 
@@ -110,6 +213,12 @@ class Recording:
         ArenaError
             When it is missing, half-written, of another version, damaged or not a recording at all.
         """
+        there = unfinished(Path(path))
+        if there is not None:
+            raise ArenaError(
+                f"{path} is half-written: {there} views are there; the same `import` command goes on where "
+                "it stopped"
+            )
         views, columns, attributes, missing = storage.load(Path(path))
         try:
             _check(views, columns)
@@ -118,9 +227,10 @@ class Recording:
         if missing:
             count = views.shape[0]
             present = count - sum(rows.stop - rows.start for rows in missing)
+            command = "import" if "lens" in attributes else "explore"
             raise ArenaError(
                 f"{path} is half-written: {present} of its {count} views are there; "
-                "the same `explore` command goes on where it stopped"
+                f"the same `{command}` command goes on where it stopped"
             )
         return cls(views=views, **_fields(columns), attributes=attributes)
 
@@ -132,7 +242,7 @@ class Recording:
         return {name: values for name, values in columns.items() if values is not None} | signals
 
 
-def _fields(columns: Mapping[str, np.ndarray]) -> dict[str, Any]:
+def _fields(columns: Mapping[str, Any]) -> dict[str, Any]:
     """Turn arrays by their names on disk into the fields of a recording."""
     signals = {name.removeprefix("signals/"): values for name, values in columns.items() if "/" in name}
     return {**{name: values for name, values in columns.items() if "/" not in name}, "signals": signals}

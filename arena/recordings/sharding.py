@@ -28,6 +28,9 @@ def codecs() -> tuple[BloscCodec, Crc32cCodec]:
     return BloscCodec(cname="lz4", clevel=9, shuffle="noshuffle", typesize=1), Crc32cCodec()
 
 
+_BLOSC = Blosc(codecs()[0].cname.value, codecs()[0].clevel, Blosc.NOSHUFFLE)
+
+
 def shards(count: int) -> list[slice]:
     """Cut this many views into shards."""
     return [slice(first, min(first + SHARD, count)) for first in range(0, count, SHARD)]
@@ -109,18 +112,25 @@ def write_shards(
 
 def write_shard(folder: Path, rows: slice, images: UInt8[np.ndarray, "shard height width 3"]) -> None:
     """Write one shard; see `write_shards`, and call it from any thread but the main one."""
-    _write(file(folder, rows), images)
+    write_frames(folder, rows, map(encoded, np.ascontiguousarray(images)))
 
 
-def _write(path: Path, images: np.ndarray) -> None:
-    described = codecs()[0]
-    blosc = Blosc(described.cname.value, described.clevel, Blosc.NOSHUFFLE)
-    sizes = np.empty(len(images), "<u8")
+def write_frames(folder: Path, rows: slice, frames: Iterable[bytes]) -> None:
+    """Write one shard of `encoded` images as they come; what their source raises leaves none."""
+    _write(file(folder, rows), frames)
+
+
+def encoded(image: UInt8[np.ndarray, "height width 3"]) -> bytes:
+    """Give a C-contiguous image as it stands in a shard; call it from any thread but the main one."""
+    frame: bytes = _BLOSC.encode(image)
+    return frame + _checksum(frame)
+
+
+def _write(path: Path, frames: Iterable[bytes]) -> None:
+    sizes = list[int]()
     # Frames go out by the megabyte: a call of the system for each would take as long as its checksum.
     with atomic_write(path) as fresh, fresh.open("wb", buffering=2**20) as stream:
-        for number, image in enumerate(np.ascontiguousarray(images)):
-            frame: bytes = blosc.encode(image)
-            sizes[number] = stream.write(frame) + stream.write(_checksum(frame))
+        sizes.extend(map(stream.write, frames))
         # Offset and size of every image that a shard has room for; all ones where none is.
         index = np.full((SHARD, 2), 2**64 - 1, "<u8")
         index[: len(sizes)] = np.stack([np.cumsum(sizes) - sizes, sizes], axis=1)

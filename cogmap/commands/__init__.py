@@ -17,6 +17,7 @@ _COMMANDS = {
     "experiment": "results:experiment_command",
     "explore": "rooms:_explore",
     "export": "maps:_export",
+    "import": "pictures:_import",
     "learn": "maps:_learn",
     "reach": "acting:_reach",
     "report": "results:_page",
