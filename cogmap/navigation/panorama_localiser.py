@@ -39,8 +39,8 @@ class TurnedLocation(NamedTuple):
     grow too unevenly with distance for affine weights to cancel them."""
     novelty: Float[np.ndarray, "queries"]
     """How unlike the query is to what the weights make up, or to the nearest view once turned, over what is
-    usual among remembered views: about 1 where it is known, and several where nothing like it is remembered: it has
-    no place then, whatever the weights."""
+    usual among remembered views: about 1 where it is known, and several where nothing like it is remembered
+    and the weights mean no place."""
 
 
 class _Usual(NamedTuple):

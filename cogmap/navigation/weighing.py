@@ -76,8 +76,8 @@ def choose_weighing(
     asked = np.unique(np.linspace(0, views - 1, min(ASKED, views)).astype(int))
     shown, kept = np.array_split(np.random.default_rng(0).permutation(columns), 2)
     found = _among_others(features[:, shown] if codes is None else features, asked, counts[-1], metric)
-    enough = found[:, -1] >= 0
-    asked, found = asked[enough], found[enough]
+    some = found[:, 0] >= 0
+    asked, found = asked[some], found[some]
     if not len(asked):
         return Weighing(regressed=False, neighbours=min(views, ALIKE))
     half, other = (_dense(features if codes is None else codes, part) for part in (shown, kept))

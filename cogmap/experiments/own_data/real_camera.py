@@ -7,6 +7,7 @@ middle row, as those of `arena.Camera.panoramic`: the centre column looks straig
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -15,8 +16,6 @@ from jaxtyping import Float, UInt8
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_views
 from cogmap.threads import one_thread
-
-Images = UInt8[np.ndarray, "views height width 3"]
 
 FINER = 8
 """Most rays along each side of a pixel, whose mean it is."""
@@ -54,17 +53,17 @@ class RealCamera:
     quality: int | None = None
     wraps: bool = True
 
-    def photograph(self, views: Images, rng: np.random.Generator) -> Images:
-        """Give what the camera makes of what an ideal one sees."""
+    def photograph(self, views: Any, rng: np.random.Generator) -> UInt8[np.ndarray, "views height width 3"]:
+        """Give what the camera makes of what an ideal one sees, (views, height, width, 3) uint8."""
         check_views(views)
         if self.tilt and not self.wraps:
             raise CogmapError(
                 f"tilt is {self.tilt:g} rad but these views do not wrap; tilt panoramas, and crop them"
             )
-        taken = np.empty_like(views)
+        taken = np.empty(views.shape, np.uint8)
         with one_thread():
-            for view, out in zip(views, taken, strict=True):
-                out[:] = self._take(view, rng)
+            for number, out in enumerate(taken):
+                out[:] = self._take(np.asarray(views[number]), rng)
         return taken
 
     def _take(
@@ -107,7 +106,7 @@ def tilted(
     rays[:, :, 0], rays[:, :, 1], rays[:, :, 2] = np.cos(azimuth), np.sin(azimuth), rise[:, None]
     up, over = np.array([np.cos([pitch, roll]), np.sin([pitch, roll])]).T
     pitched = np.array([[up[0], 0, -up[1]], [0, 1, 0], [up[1], 0, up[0]]])
-    rolled = np.array([[1, 0, 0], [0, over[0], over[1]], [0, -over[1], over[0]]])
+    rolled = np.array([[1, 0, 0], [0, over[0], -over[1]], [0, over[1], over[0]]])
     columns, rows = _where(panorama.shape, rays @ (pitched @ rolled).T)
     # one column more on either side, for what lies between the last and the first
     around = np.pad(panorama, ((0, 0), (1, 1), (0, 0)), mode="wrap")
@@ -116,12 +115,12 @@ def tilted(
 
 def crops(
     panorama: UInt8[np.ndarray, "height width 3"],
-    yaws: Float[np.ndarray, "views"],
+    yaws: Float[np.ndarray, "crops"],
     *,
     width: int = 160,
     height: int = 120,
     field_of_view: float = np.pi / 2,
-) -> Images:
+) -> UInt8[np.ndarray, "crops rows columns 3"]:
     """Cut perspective views from a panorama: what a camera sees that spins on the spot.
 
     Each pixel is the mean over its area.
