@@ -76,19 +76,19 @@ class RealCamera:
             view = tilted(view, self.tilt * pitch, self.tilt * roll)
         light = view * np.float32(1 + self.exposure * brighter)
         light = self._blurred(light) + 255 * np.float32(self.noise) * grain
-        picture = np.rint(np.clip(light, 0, 255)).astype(np.uint8)
+        picture = np.asarray(np.rint(np.clip(light, 0, 255)), np.uint8)
         if self.quality is None:
             return picture
         file = cv2.imencode(".jpg", picture[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, self.quality])[1]
-        return np.asarray(cv2.imdecode(file, cv2.IMREAD_COLOR)[:, :, ::-1], np.uint8)
+        return np.asarray(cv2.imdecode(file, cv2.IMREAD_COLOR), np.uint8)[:, :, ::-1]
 
-    def _blurred(self, light: np.ndarray) -> np.ndarray:
+    def _blurred(self, light: Float[np.ndarray, "height width 3"]) -> Float[np.ndarray, "height width 3"]:
         if not self.blur:
             return light
         border = int(np.ceil(4 * self.blur)) if self.wraps else 0
         padded = np.pad(light, ((0, 0), (border, border), (0, 0)), mode="wrap")
         blurred = cv2.GaussianBlur(padded, (0, 0), self.blur, borderType=cv2.BORDER_REPLICATE)
-        return blurred[:, border : border + light.shape[1]]
+        return np.asarray(blurred)[:, border : border + light.shape[1]]
 
 
 def tilted(
