@@ -30,6 +30,15 @@ class Compared(NamedTuple):
     """Of the known one that fits best (`compass.misfit`), among the nearest."""
 
 
+class Turned(NamedTuple):
+    """By how much known views have to be turned to look as others do."""
+
+    turns: Float[np.ndarray, "views near"]
+    """Heading of the other minus that of the known view, rad in (−π, π]."""
+    misfit: Float[np.ndarray, "views"]
+    """As in `Compared`."""
+
+
 class PanoramaCode(TransformerMixin, BaseEstimator):
     r"""Place and heading of panoramic views, from these views alone.
 
@@ -121,14 +130,19 @@ class PanoramaCode(TransformerMixin, BaseEstimator):
         A turn is the more wrong the farther the known view is, and wrong the other way on the other side:
         affine weights (`affine_weights`) cancel that. All count alike when None.
         """
+        turned, unlike = self.turn(seen, nearest)
+        told = np.exp(1j * (self.headings_[nearest] + turned))
+        heading = np.angle((told if weights is None else weights * told).sum(axis=1))
+        return Compared(np.asarray(heading), unlike)
+
+    def turn(self, seen: Strips, nearest: Int[np.ndarray, "views near"]) -> Turned:
+        """Turn known views to other panoramas, and see how well the nearest of them fit."""
         pairs = np.column_stack([np.repeat(np.arange(len(nearest)), nearest.shape[1]), nearest.ravel()])
         with one_thread():
             turned = turns(seen.grey, pairs, self._grey)
-            told = np.exp(1j * (self.headings_[pairs[:, 1]] + turned)).reshape(nearest.shape)
             fits = np.arange(len(pairs)).reshape(nearest.shape)[:, :FIT].ravel()
             unlike = misfit(seen.grey, pairs[fits], turned[fits], self._grey).reshape(len(nearest), -1)
-        heading = np.angle((told if weights is None else weights * told).sum(axis=1))
-        return Compared(np.asarray(heading), unlike.min(axis=1))
+        return Turned(turned.reshape(nearest.shape), unlike.min(axis=1))
 
     def compare_known(self, pairs: Int[np.ndarray, "pairs 2"]) -> Compared:
         """Give by how much the first of near known views is turned from the second, and their misfit."""

@@ -1,17 +1,21 @@
 """Localisation: where a view was taken, in terms of remembered views."""
 
+from __future__ import annotations
+
 from dataclasses import KW_ONLY, dataclass
-from typing import NamedTuple
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float, Int
 
 from cogmap.errors import CogmapError
-from cogmap.graph.affine_weights import affine_weights
 from cogmap.graph.knn import Metric, nearest_points
 from cogmap.graph.points import Cloud, checked_cloud
 from cogmap.inputs import checked_count
+from cogmap.navigation.panorama_localiser import PanoramaLocaliser
+from cogmap.navigation.weighing import Weighing, choose_weighing
 
 
 class Location(NamedTuple):
@@ -29,16 +33,19 @@ class Localiser:
 
     Views with similar `features`, such as bags of words, are near, but how near features cannot say. So the
     weights are those of a ridge regression on the `codes` of the nearest views
-    (`cogmap.graph.affine_weights`).
+    (`cogmap.graph.affine_weights`). Where codes are too noisy for that, as bags of words are, or remembered
+    views too far apart, the nearest are weighed by how alike they are; the remembered views tell
+    (`cogmap.navigation.weighing`).
 
     Parameters
     ----------
     features
         Of the remembered views, by which the nearest are found, (views, features), dense or sparse.
     codes
-        Of the same views, `image_codes`, (views, codes); the features themselves when None.
+        Of the same views, `image_codes`, (views, codes); the features themselves when None. They say far more
+        than bags of words do.
     neighbours
-        k; all there are when these are fewer.
+        k of the regression; all there are when these are fewer. When None, what suits the remembered views.
     ridge
         λ. Less follows noise, more stays near the middle of the neighbours.
     metric
@@ -53,9 +60,31 @@ class Localiser:
     features: Cloud
     _: KW_ONLY
     codes: Float[np.ndarray, "views codes"] | None = None
-    neighbours: int = 60
+    neighbours: int | None = None
     ridge: float = 1e-4
     metric: Metric = "cosine"
+
+    @staticmethod
+    def for_panoramas(views: Any) -> PanoramaLocaliser:
+        """Remember panoramas, (views, height, width, 3) uint8; places others, and tells turns.
+
+        Raises
+        ------
+        CogmapError
+            For views that do not look all around.
+        """
+        return PanoramaLocaliser.remember(views)
+
+    @cached_property
+    def weighing(self) -> Weighing:
+        """How views are weighed: as told, or as suits the remembered ones."""
+        views = self.features.shape[0]
+        if self.neighbours is not None:
+            return Weighing(
+                regressed=True, neighbours=min(checked_count("neighbours", self.neighbours), views)
+            )
+        known = None if self.codes is None else _codes(self.codes, views)
+        return choose_weighing(checked_cloud(self.features), known, self.ridge, self.metric)
 
     def locate(self, query: Cloud, *, codes: Float[np.ndarray, "queries codes"] | None = None) -> Location:
         """Place views given by their features, (queries, features), and codes if the remembered have any."""
@@ -70,9 +99,8 @@ class Localiser:
                 f"codes of the query have {test.shape[1]} features but those of the views {train.shape[1]}; "
                 "make both alike"
             )
-        count = min(checked_count("neighbours", self.neighbours), self.features.shape[0])
-        indices = nearest_points(self.features, count, queries=query, metric=self.metric).indices
-        return Location(indices, affine_weights(train, indices, test, self.ridge))
+        near = nearest_points(self.features, self.weighing.neighbours, queries=query, metric=self.metric)
+        return Location(near.indices, self.weighing.weigh(near, train, test, self.ridge))
 
 
 def _codes(codes: Cloud, views: int) -> Float[np.ndarray, "views codes"]:
