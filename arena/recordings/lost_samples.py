@@ -16,6 +16,8 @@ BACK = 0.5
 """Where a path goes on after an excursion, in lengths of the jumps: from where it was, not from beyond."""
 MOSTLY = 0.5
 """Share of the visits to a place that must be jumps for it to be none."""
+SENTINELS = 20
+"""Places that are looked for at most."""
 FEWEST = 10
 """Samples of a path in which jumps are looked for."""
 EDGE = 3
@@ -78,8 +80,8 @@ def too_fast(times: Times, positions: Positions, fastest: float) -> Mask:
     if len(breaks) > MOST_BREAKS * len(step):
         usual = float(np.median(step / lapse))
         raise ArenaError(
-            f"fastest is {fastest:g} m/s, and {len(breaks)} of {len(step)} steps are faster, by half of them "
-            f"than {usual:.3g} m/s; give a higher one, or say by scale or calibration how long a unit is"
+            f"fastest is {fastest:g} m/s, and {len(breaks)} of {len(step)} steps are faster; half of all go at "
+            f"{usual:.3g} m/s: give a higher one, or say by scale or calibration how long a unit is"
         )
     starts = _stretches(breaks, len(t))
     ends = np.append(starts[1:], len(t))
@@ -95,25 +97,28 @@ def jumps(times: Times, positions: Positions) -> Mask:
 
     A stay at one place counts when the ways there and away are `FAST` times as fast as the path usually is,
     as long as `FAR` of its extent, and it goes on from near where it was, or had stayed for several samples.
-    A place that is jumped at twice or more, and mostly when it is visited, is lost wherever it occurs; jumps
-    are then looked for among the others, which have better neighbours.
+    A place that is jumped at twice or more, and mostly when it is visited, is lost wherever it occurs. The one
+    that is jumped at most goes first: what was between two of its samples has better neighbours then.
     """
     doubtful = np.zeros(len(times), dtype=bool)
-    known = np.flatnonzero(np.isfinite(positions).all(axis=1))
-    if len(known) < FEWEST:
-        return doubtful
-    stay, off = _excursions(times[known], positions[known])
-    if not off.any():
-        return doubtful
-    # Complex numbers are sorted ten times as fast as rows.
-    places, pair = np.unique(positions[known] @ [1, 1j], return_inverse=True)
-    first = np.unique(stay, return_index=True)[1]
-    visits, jumped = (np.bincount(pair[at], minlength=len(places)) for at in (first, first[off[first]]))
-    always = ((jumped >= 2) & (jumped >= MOSTLY * visits))[pair]
-    doubtful[known[always]] = True
-    others = known[~always]
-    if len(others) >= FEWEST:
-        doubtful[others] = _excursions(times[others], positions[others])[1]
+    left = np.flatnonzero(np.isfinite(positions).all(axis=1))
+    for _ in range(SENTINELS):
+        if len(left) < FEWEST:
+            break
+        stay, off = _excursions(times[left], positions[left])
+        # Complex numbers are sorted ten times as fast as rows.
+        place = positions[left] @ [1, 1j]
+        first = np.unique(stay, return_index=True)[1]
+        places, jumped = np.unique(place[first[off[first]]], return_counts=True)
+        most = int(np.argmax(jumped)) if len(places) else 0
+        if not len(places) or jumped[most] < 2:
+            doubtful[left[off]] = True
+            break
+        there = place == places[most]
+        always = jumped[most] >= MOSTLY * there[first].sum()
+        lost = there if always else there & off
+        doubtful[left[lost]] = True
+        left = left[~lost]
     return doubtful
 
 
