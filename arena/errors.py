@@ -6,4 +6,4 @@ class ArenaError(ValueError):
 
 
 class TrackWarning(UserWarning):
-    """Samples of an animal's track are doubtful, or were judged lost, bridged or moved; the message says which."""
+    """Samples of an animal's track are doubtful, or were judged lost, bridged or moved; it says which."""

@@ -23,16 +23,16 @@ class Fitted(NamedTuple):
     scale: float
     """m per unit of the recorded positions."""
     left_out: Bool[np.ndarray, " samples"]
-    """Positions that were recorded, and are doubtful or far from all others."""
+    """Positions that were recorded, and are far from all others or, where no speed is told, doubtful."""
     too_fast: Bool[np.ndarray, " samples"]
-    """The same, and the animal would have gone faster than it can."""
+    """Positions that were recorded, and that the animal is too slow for."""
 
 
 def fitted(recorded: RecordedPath, free: BaseGeometry, fastest: float | None) -> Fitted:
     """Scale and move a path so that it just fits the box around a free space.
 
     Its extremes are the outermost positions but for doubtful ones, and for those that lie by more than the
-    whole range of the middle 99 % beyond it. Both are left out.
+    whole range of the middle 99 % beyond it. Both are left out; a speed that is told judges doubtful ones.
 
     Parameters
     ----------
@@ -46,19 +46,26 @@ def fitted(recorded: RecordedPath, free: BaseGeometry, fastest: float | None) ->
     """
     known = np.isfinite(recorded.positions).all(axis=1)
     positions = np.where(known[:, None], recorded.positions, np.nan)
-    left_out = known & (recorded.doubtful | _far(positions, known & ~recorded.doubtful))
+    doubtful = known & recorded.doubtful
+    left_out = known & _far(positions, known & ~doubtful)
+    if fastest is None:
+        left_out |= doubtful
     positions[left_out] = np.nan
     room = np.reshape(free.bounds, (2, 2))
     fast = np.zeros(len(positions), dtype=bool)
+    trusted = np.where(doubtful[:, None], np.nan, positions)
     for _ in range(ROUNDS):
-        low, high = np.nanmin(positions, axis=0), np.nanmax(positions, axis=0)
+        low, high = np.nanmin(trusted, axis=0), np.nanmax(trusted, axis=0)
         sides = zip(room[1] - room[0], high - low, strict=True)
         scale = float(min((side / length for side, length in sides if length > 0), default=1.0))
-        more = too_fast(recorded.times, positions * scale, fastest) if fastest else np.zeros_like(fast)
-        if not more.any():
+        if fastest is None:
             break
-        fast |= more
+        more = too_fast(recorded.times, positions * scale, fastest)
         positions[more] = np.nan
+        fast |= more
+        if not more.any() and trusted is positions:
+            break
+        trusted = positions
     placed = (positions - (low + high) / 2) * scale + room.mean(axis=0)
     return Fitted(placed, scale, left_out, fast)
 

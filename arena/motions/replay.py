@@ -131,22 +131,27 @@ class Replay(TrackFormat):
 
     def _fitted(self, free: BaseGeometry) -> RecordedPath:
         """Read the path and bring it into the room; the speed is that in the room."""
-        recorded = read_as(self.path, self.model_copy(update={"fastest": None}))
+        unhurried = self.model_copy(update={"fastest": None})
+        recorded = read_as(self.path, unhurried, warn=self.fastest is None)
         placed, scale, left_out, fast = fitted(recorded, free, self.fastest)
         notes = {**recorded.notes, "fitted_scale": scale}
         if self.fastest is not None:
-            notes["too_fast"] = int(fast.sum())
+            notes |= {
+                "too_fast": int(fast.sum()),
+                "doubtful": int((recorded.doubtful & ~fast & ~left_out).sum()),
+            }
         if left_out.any():
             notes["left_out"] = int(left_out.sum())
             warnings.warn(
-                f"{self.path}: fit leaves {notes['left_out']} of {len(left_out)} samples out, which are doubtful "
-                "or far from all others; they become gaps",
+                f"{self.path}: fit leaves {notes['left_out']} of {len(left_out)} samples out, which are "
+                "doubtful or far from all others; they become gaps",
                 TrackWarning,
                 stacklevel=3,
             )
         headings = recorded.headings
         if headings is not None:
             headings = np.where(left_out | fast, np.nan, headings)
+            headings = headings if np.isfinite(headings).any() else None
         return recorded._replace(positions=placed, headings=headings, notes=notes)
 
     def _ahead(self, times: Times, positions: Positions) -> Times:

@@ -27,7 +27,7 @@ def names_of(path: Path) -> tuple[str, ...]:
     """Give the names of a file's columns.
 
     A `.csv`, `.tsv` or `.txt` file is read as `arena.recordings.delimited` tells, a `.parquet` or `.pq` file
-    has its own, and an `.npz` file its arrays; `pos`, (samples, 2), is `x` and `y`. The endings may be capitals.
+    has its own, and an `.npz` file its arrays; `pos`, (samples, 2), is `x` and `y`. Endings may be capitals.
 
     Raises
     ------

@@ -15,7 +15,7 @@ from arena.errors import ArenaError
 MARKS = {b"\xef\xbb\xbf": "utf-8-sig", b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}
 """Encodings by their byte order marks."""
 DELIMITERS = ("\t", ";", ",")
-"""What may part cells; the first that parts the names and most first lines is taken: a comma may be decimal."""
+"""What may part cells; the first that parts the names and most first lines is it: commas may be decimal."""
 ABSENT = ("", "na", "n/a", "nan", "none", "null")
 """What trackers and spreadsheets write where there is no number, in any case."""
 PEEK = 20
@@ -172,4 +172,3 @@ def _names(table: list[list[str]]) -> tuple[int, tuple[str, ...]]:
     # numpy.savetxt comments its line of names out.
     names = [name.strip() for name in table[0]]
     return 1, tuple([names[0].removeprefix("#").lstrip(), *names[1:]] if names else names)
-

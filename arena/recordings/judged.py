@@ -20,8 +20,8 @@ def lost_as(notes: Mapping[str, object]) -> str:
 def judged(notes: Mapping[str, object]) -> str:
     """Say what the notes of a track, or of the walk that replays it, tell of it; nothing for a plain one.
 
-    >>> judged({"samples": 900, "blank": 2, "missing": 12, "gaps": 9, "interpolated": 14, "longest_gap_s": 0.2})
-    'of 900 samples 14 are lost (2 blank, 12 missing as told); 9 gaps bridged by 14 samples, the longest of 0.2 s'
+    >>> judged({"samples": 900, "blank": 2, "missing": 12, "trimmed": 1, "clipped": 4})
+    'of 900 samples 14 are lost (2 blank, 12 missing as told); 1 trimmed from the ends; 4 clipped to the room'
     """
     said = []
     lost = sum(int(str(notes.get(kind, 0))) for kind in LOST)

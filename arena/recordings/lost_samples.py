@@ -80,8 +80,8 @@ def too_fast(times: Times, positions: Positions, fastest: float) -> Mask:
     if len(breaks) > MOST_BREAKS * len(step):
         usual = float(np.median(step / lapse))
         raise ArenaError(
-            f"fastest is {fastest:g} m/s, and {len(breaks)} of {len(step)} steps are faster; half of all go at "
-            f"{usual:.3g} m/s: give a higher one, or say by scale or calibration how long a unit is"
+            f"fastest is {fastest:g} m/s, and {len(breaks)} of {len(step)} steps are faster; half of all go "
+            f"at {usual:.3g} m/s: give a higher one, or say by scale or calibration how long a unit is"
         )
     starts = _stretches(breaks, len(t))
     ends = np.append(starts[1:], len(t))
@@ -97,8 +97,8 @@ def jumps(times: Times, positions: Positions) -> Mask:
 
     A stay at one place counts when the ways there and away are `FAST` times as fast as the path usually is,
     as long as `FAR` of its extent, and it goes on from near where it was, or had stayed for several samples.
-    A place that is jumped at twice or more, and mostly when it is visited, is lost wherever it occurs. The one
-    that is jumped at most goes first: what was between two of its samples has better neighbours then.
+    A place that is jumped at twice or more, and mostly when it is visited, is lost wherever it occurs. The
+    one that is jumped at most goes first: what was between two of its samples has better neighbours then.
     """
     doubtful = np.zeros(len(times), dtype=bool)
     left = np.flatnonzero(np.isfinite(positions).all(axis=1))
@@ -136,7 +136,7 @@ def sentinel(positions: Positions, doubtful: Mask) -> Sentinel | None:
 def _excursions(
     times: Float[np.ndarray, " known"], positions: Float[np.ndarray, "known 2"]
 ) -> tuple[Int[np.ndarray, " known"], Bool[np.ndarray, " known"]]:
-    """Number the stay at one place that each sample is in, and say whether the path jumps there and back."""
+    """Give the number of the stay at one place that each sample is in, and whether it is jumped at."""
     moved = (np.diff(positions, axis=0) != 0).any(axis=1)
     stay = np.concatenate([[0], np.cumsum(moved)])
     starts = np.append(0, np.flatnonzero(moved) + 1)

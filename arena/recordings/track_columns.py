@@ -102,7 +102,9 @@ def _hint(names: Sequence[str], missing: Sequence[str]) -> str:
     elif {"x", "y"} & set(missing):
         hints.append("x= and y=, the names of their columns")
     if "t" in missing:
-        hints.append("rate=, in Hz" if _named(names, FRAMES) else "t=, the name of its column, or rate=, in Hz")
+        hints.append(
+            "rate=, in Hz" if _named(names, FRAMES) else "t=, the name of its column, or rate=, in Hz"
+        )
     return f"pass {' and '.join(hints)}" if names else "it must have t (s), x and y, by name"
 
 

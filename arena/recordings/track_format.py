@@ -59,7 +59,8 @@ class TrackFormat(Settings):
     missing
         What the tracker writes where it lost the animal, in units of the file: a number that both x and y are
         then, (0,) or (-1, 1023), or pairs, ((1023, 767),). NaN and empty cells are missing in any case, and
-        nothing else is unless told: an animal may be at (0, 0).
+        nothing else is unless told: an animal may be at (0, 0). A number that is no angle is a missing
+        heading, too.
     fastest
         Speed that the animal cannot exceed, m/s: the fewest samples are judged lost with which it does not.
 

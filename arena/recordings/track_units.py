@@ -40,8 +40,8 @@ def check_seconds(path: Path, name: str, times: Times, positions: Positions) -> 
     usual = np.median(np.diff(times))
     raise ArenaError(
         f"{path}: {name} is whole and goes by {usual:g}, in which the animal moves "
-        f"{np.median(step[step > 0]) / extent:.1%} of its range: it does not count seconds; pass rate=, how many "
-        "make a second (the frame rate, 1000 for milliseconds, or 1 if they are seconds indeed)"
+        f"{np.median(step[step > 0]) / extent:.1%} of its range: it does not count seconds; pass rate=, how "
+        "many make a second (the frame rate, 1000 for milliseconds, or 1 if they are seconds indeed)"
     )
 
 
@@ -62,8 +62,8 @@ def to_radians(path: Path, name: str, headings: Headings, times: Times, *, degre
         seem = len(told) >= FEWEST and np.ptp(told) > 1.5 * np.pi and np.abs(told).max() <= ROUND
         if seem and (np.abs(np.diff(told)) > np.pi).any():
             raise ArenaError(
-                f"{path}: {name} goes from {told.min():.3g} to {told.max():.3g} and jumps by nearly 2π: these "
-                "are radians, not degrees; pass heading_in='rad', or call the column heading"
+                f"{path}: {name} goes from {told.min():.3g} to {told.max():.3g} and jumps by nearly 2π: "
+                "these are radians, not degrees; pass heading_in='rad', or call the column heading"
             )
         return np.deg2rad(headings)
     if len(told) and np.abs(told).max() > ROUND:
@@ -72,8 +72,8 @@ def to_radians(path: Path, name: str, headings: Headings, times: Times, *, degre
         if (step > np.pi).any() or (len(told) >= FEWEST and np.quantile(rate, 0.9) > SPINNING):
             raise ArenaError(
                 f"{path}: {name} goes from {told.min():.4g} to {told.max():.4g} in steps of up to "
-                f"{step.max():.4g}, which are no radians; pass heading_in='deg' (or call the column heading_deg) "
-                "if these are degrees, and missing= if some number stands for lost ones"
+                f"{step.max():.4g}, which are no radians; pass heading_in='deg' (or call the column "
+                "heading_deg) if these are degrees, and missing= if some number stands for lost ones"
             )
     return headings
 

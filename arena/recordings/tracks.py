@@ -47,7 +47,7 @@ def read_track(path: str | Path, **options: Any) -> RecordedPath:
     `heading_deg`; other columns are left alone. An NPZ file holds arrays of the same names, or `pos`,
     (samples, 2), for x and y.
 
-    What both `missing` and `fastest` leave is looked through for jumps off and back, and for a pair of numbers
+    What `missing` and `fastest` leave is looked through for jumps off and back, and for a pair of numbers
     that recurs there. They are kept, for nobody said that they are lost, and a `TrackWarning` tells of them.
 
     Parameters
@@ -67,8 +67,8 @@ def read_track(path: str | Path, **options: Any) -> RecordedPath:
     return read_as(Path(path).expanduser(), TrackFormat(**options))
 
 
-def read_as(path: Path, told: TrackFormat) -> RecordedPath:
-    """Read a track by its format; see `read_track`."""
+def read_as(path: Path, told: TrackFormat, *, warn: bool = True) -> RecordedPath:
+    """Read a track by its format; see `read_track`. Who judges doubtful samples need no warning of them."""
     found = choose_columns(path, names_of(path), told)
     columns, rows = _rows_of_track(path, found, told)
     positions = np.stack([columns[found.x], columns[found.y]], axis=1)
@@ -80,7 +80,9 @@ def read_as(path: Path, told: TrackFormat) -> RecordedPath:
     positions[lost] = np.nan
     if told.rate is None and found.t is not None:
         check_seconds(path, found.t, times, positions)
-    headings = _headings(path, found, told, columns, times, lost)
+    headings = None
+    if found.heading is not None:
+        headings = _radians(path, found.heading, np.where(lost, np.nan, columns[found.heading]), times, told)
     metres = told.metres_per_unit
     placed, headings = to_metres(positions, headings, metres, y_down=told.y_down)
     if told.fastest is not None:
@@ -93,7 +95,8 @@ def read_as(path: Path, told: TrackFormat) -> RecordedPath:
     doubtful = jumps(times, positions)
     if doubtful.any():
         notes["doubtful"] = int(doubtful.sum())
-        warnings.warn(_doubt(path, positions, doubtful), TrackWarning, stacklevel=3)
+        if warn:
+            warnings.warn(_doubt(path, positions, doubtful), TrackWarning, stacklevel=3)
     units = {"metres_per_unit": list(metres), "y_down": told.y_down, "rate": told.rate}
     usual = {"metres_per_unit": [1.0, 1.0], "y_down": False, "rate": None}
     notes |= {name: value for name, value in units.items() if value != usual[name]}
@@ -134,9 +137,7 @@ def check_increasing(path: Path, name: str, times: Times, rows: Rows) -> None:
         )
 
 
-def _rows_of_track(
-    path: Path, found: TrackColumns, told: TrackFormat
-) -> tuple[dict[str, np.ndarray], Rows]:
+def _rows_of_track(path: Path, found: TrackColumns, told: TrackFormat) -> tuple[dict[str, np.ndarray], Rows]:
     """Read the columns, and keep the rows of the track that is told."""
     words = [found.track] if found.track else []
     columns, rows = read_columns(path, found.all, words)
@@ -164,8 +165,9 @@ def _times(
     counted = columns[found.t]
     if told.t is None and (counted % 1 != 0).any() and np.isfinite(counted).all():
         raise ArenaError(
-            f"{path}: {found.t} has fractions, such as {counted[counted % 1 != 0][0]:g}, and counts no frames; "
-            f"leave rate out if it is in s, or pass t={found.t!r} if rate= says how many of its units make a second"
+            f"{path}: {found.t} has fractions, such as {counted[counted % 1 != 0][0]:g}, and counts no "
+            f"frames; leave rate out if it is in s, or pass t={found.t!r} if rate= says how many of its units "
+            "make a second"
         )
     check_increasing(path, found.t, counted, rows)
     return counted / told.rate
@@ -194,20 +196,15 @@ def _lost(
     return lost
 
 
-def _headings(
-    path: Path,
-    found: TrackColumns,
-    told: TrackFormat,
-    columns: Mapping[str, np.ndarray],
-    times: Times,
-    lost: Bool[np.ndarray, " samples"],
-) -> Float[np.ndarray, " samples"] | None:
-    """Give the headings, rad; where the animal was lost, so was its head."""
-    if found.heading is None:
-        return None
-    values = np.where(lost, np.nan, columns[found.heading])
-    degrees = told.heading_in == "deg" if told.heading_in else found.heading.lower().endswith("deg")
-    return to_radians(path, found.heading, values, times, degrees=degrees)
+def _radians(
+    path: Path, name: str, headings: Float[np.ndarray, " samples"], times: Times, told: TrackFormat
+) -> Float[np.ndarray, " samples"]:
+    """Give headings in rad; told numbers that are no angles are missing there, too."""
+    degrees = told.heading_in == "deg" if told.heading_in else name.lower().endswith("deg")
+    most = 360.0 if degrees else 2 * np.pi
+    none = [value for value in told.missing if np.ndim(value) == 0 and np.abs(value) > most]
+    headings = np.where(np.isin(headings, none), np.nan, headings)
+    return to_radians(path, name, headings, times, degrees=degrees)
 
 
 def _check_known(
@@ -220,7 +217,8 @@ def _check_known(
     if known.sum() < 2:
         lost = lost_as(notes)
         raise ArenaError(
-            f"{path} has {known.sum()} positions that are numbers{lost and f' ({lost})'}; a path needs at least two"
+            f"{path} has {known.sum()} positions that are numbers{lost and f' ({lost})'}; "
+            "a path needs at least two"
         )
     if headings is not None and not np.isfinite(headings).any():
         raise ArenaError(f"{path} has a heading column without a number; leave it out")
@@ -232,13 +230,13 @@ def _doubt(path: Path, positions: Positions, doubtful: Bool[np.ndarray, " sample
     count = int(doubtful.sum())
     if usual is None:
         return (
-            f"{path}: {count} of {len(positions)} samples jump off and back, far faster than the path usually "
-            "is; pass fastest=, in m/s, if the tracker erred there"
+            f"{path}: {count} of {len(positions)} samples jump off and back, far faster than the path "
+            "usually is; pass fastest=, in m/s, if the tracker erred there"
         )
     pair = f"{usual.x:g}" if usual.x == usual.y else f"(({usual.x:g}, {usual.y:g}),)"
     rest = f", and {count - usual.samples} more jump, too" if count > usual.samples else ""
     return (
-        f"{path}: {usual.samples} of {len(positions)} samples are exactly ({usual.x:g}, {usual.y:g}), where the "
-        f"path jumps to and back{rest}: trackers write such a pair where they lost the animal; "
+        f"{path}: {usual.samples} of {len(positions)} samples are exactly ({usual.x:g}, {usual.y:g}), where "
+        f"the path jumps to and back{rest}: trackers write such a pair where they lost the animal; "
         f"pass missing={pair} if so"
     )
