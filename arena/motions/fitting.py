@@ -78,4 +78,5 @@ def _far(
     # On a narrow track the long side is the measure for both.
     margin = (high - low).max()
     with np.errstate(invalid="ignore"):
-        return ((positions < low - margin) | (positions > high + margin)).any(axis=1)
+        far: np.ndarray = ((positions < low - margin) | (positions > high + margin)).any(axis=1)
+    return far

@@ -65,7 +65,8 @@ def to_radians(path: Path, name: str, headings: Headings, times: Times, *, degre
                 f"{path}: {name} goes from {told.min():.3g} to {told.max():.3g} and jumps by nearly 2π: "
                 "these are radians, not degrees; pass heading_in='rad', or call the column heading"
             )
-        return np.deg2rad(headings)
+        radians: Headings = np.deg2rad(headings)
+        return radians
     if len(told) and np.abs(told).max() > ROUND:
         step = np.abs(np.diff(told))
         rate = step / np.diff(times[known])

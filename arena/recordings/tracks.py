@@ -166,8 +166,8 @@ def _times(
     if told.t is None and (counted % 1 != 0).any() and np.isfinite(counted).all():
         raise ArenaError(
             f"{path}: {found.t} has fractions, such as {counted[counted % 1 != 0][0]:g}, and counts no "
-            f"frames; leave rate out if it is in s, or pass t={found.t!r} if rate= says how many of its units "
-            "make a second"
+            f"frames; leave rate out if it is in s, or pass t={found.t!r} if rate= says how many of its "
+            "units make a second"
         )
     check_increasing(path, found.t, counted, rows)
     return counted / told.rate

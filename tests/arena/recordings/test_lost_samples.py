@@ -59,6 +59,13 @@ def test_a_steady_speed_is_not_too_fast_and_what_is_lost_stays_so() -> None:
     assert np.array_equal(np.flatnonzero(too_fast(many, away, 1.0)), np.arange(3000, 6000))
 
 
+def test_an_error_within_reach_of_one_neighbour_goes_alone() -> None:
+    t = np.arange(60) / 10
+    positions = np.stack([0.5 * t, 0 * t], axis=1)
+    positions[30, 0] = positions[29, 0] - 0.09
+    assert np.flatnonzero(too_fast(t, positions, 1.0)).tolist() == [30]
+
+
 def test_a_speed_that_half_of_the_path_exceeds_is_refused() -> None:
     with pytest.raises(ArenaError, match=r"1999 of 1999 steps are faster; half of all go at \d+ m/s"):
         too_fast(*path(), 1.0)
