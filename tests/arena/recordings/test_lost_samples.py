@@ -66,13 +66,20 @@ def test_an_error_within_reach_of_one_neighbour_goes_alone() -> None:
     assert np.flatnonzero(too_fast(t, positions, 1.0)).tolist() == [30]
 
 
+def test_an_error_that_creeps_back_is_kept_from_where_it_can_be_reached() -> None:
+    along = np.zeros(66)
+    along[30:36] = 0.5, 0.42, 0.34, 0.26, 0.18, 0.1
+    lost = too_fast(np.arange(66) / 10, np.stack([along, 0 * along], axis=1), 1.0)
+    assert np.flatnonzero(lost).tolist() == [30, 31, 32]
+
+
 def test_a_speed_that_half_of_the_path_exceeds_is_refused() -> None:
     with pytest.raises(ArenaError, match=r"1999 of 1999 steps are faster; half of all go at \d+ m/s"):
         too_fast(*path(), 1.0)
 
 
 @pytest.mark.parametrize("share", [0.002, 0.05, 0.2])
-@pytest.mark.parametrize("pair", [(1023, 1023), (0, 0), (-1, -1), (640, 480)])
+@pytest.mark.parametrize("pair", [(1023, 1023), (0, 0), (-1, -1), (640, 480), (250, 220)])
 def test_an_undeclared_sentinel_is_found_exactly(share: float, pair: tuple[int, int]) -> None:
     t, positions = path()
     lost = np.random.default_rng(3).random(len(t)) < share
@@ -85,7 +92,15 @@ def test_an_undeclared_sentinel_is_found_exactly(share: float, pair: tuple[int, 
 
 def test_two_sentinels_and_single_errors_are_found() -> None:
     t, positions = path()
-    wrong = {5: (900, 3), 100: (0, 0), 300: (0, 0), 301: (1023, 1023), 500: (1023, 1023), 1700: (2, 950)}
+    wrong = {
+        1: (950, 2),
+        5: (900, 3),
+        100: (0, 0),
+        300: (0, 0),
+        301: (1023, 1023),
+        500: (1023, 1023),
+        1700: (2, 950),
+    }
     wrong |= {99: (1023, 1023)}
     for at, place in wrong.items():
         positions[at] = place
@@ -96,6 +111,14 @@ def test_two_sentinels_and_single_errors_are_found() -> None:
     single[5] = True
     assert sentinel(positions, single) is None
     assert sentinel(positions, ~found & False) is None
+
+
+def test_an_animal_that_is_lost_once_for_long_may_come_back_elsewhere() -> None:
+    t, positions = path()
+    positions[400:478] = 0
+    way = np.hypot(*(positions[478] - positions[399]))
+    assert way > 0.5 * np.hypot(*positions[[399, 478]].T).min()
+    assert np.flatnonzero(jumps(t, positions)).tolist() == list(range(400, 478))
 
 
 def still(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
@@ -112,12 +135,19 @@ def resting(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     return np.arange(len(along)) / 25, np.stack([along, 0 * along], axis=1) + rng.normal(0, 5e-4, (6120, 2))
 
 
+def dashing(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """It is seen seldom, and crosses its cage between four samples."""
+    rest, there, back = np.zeros(200), np.linspace(0, 1, 4), np.linspace(1, 0, 4)
+    along = np.concatenate([rest, there, 1 + rest, back, rest])
+    return np.arange(len(along)) / 5, np.stack([along, 0 * along], axis=1) + rng.normal(0, 1e-3, (608, 2))
+
+
 def walking(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     walk = Brownian().walk(Arena.load("open_field"), Disc(), 1000, rng)
     return walk.times, np.round(50 * walk.poses[:, :2])
 
 
-@pytest.mark.parametrize("kind", [still, resting, walking])
+@pytest.mark.parametrize("kind", [still, resting, dashing, walking])
 def test_animals_are_not_doubted(kind) -> None:
     assert not jumps(*kind(np.random.default_rng(0))).any()
 
