@@ -50,6 +50,8 @@ def test_radians_called_degrees_are_refused(headings: np.ndarray) -> None:
 def test_small_degrees_are_believed() -> None:
     head_fixed = RNG.normal(0, 0.5, 3000)
     np.testing.assert_allclose(radians(head_fixed, degrees=True), np.deg2rad(head_fixed))
+    swaying = 3 * np.sin(TIMES)
+    np.testing.assert_allclose(radians(swaying, degrees=True), np.deg2rad(swaying))
     few = np.array([3.0, -3.0, 1.0])
     np.testing.assert_allclose(radians(few, degrees=True, times=TIMES[:3]), np.deg2rad(few))
 
