@@ -198,6 +198,16 @@ def test_deeplabcut(deeplabcut: Path) -> None:
     )
 
 
+def test_each_lost_sample_is_counted_once(tmp_path: Path) -> None:
+    columns = {**rat(), "p": np.ones(600)}
+    columns["x"][[5, 6]] = columns["y"][[5, 6]] = 1023
+    columns["x"][[8, 9]] = np.nan
+    columns["p"][[6, 9, 12]] = 0.1, np.nan, np.nan
+    found = read_track(saved(tmp_path, **columns), likelihood="p", least_likelihood=0.5, missing=1023)
+    assert found.notes == {"blank": 2, "missing": 2, "unlikely": 1}
+    assert np.flatnonzero(np.isnan(found.positions[:, 0])).tolist() == [5, 6, 8, 9, 12]
+
+
 @pytest.mark.parametrize(
     ("options", "said"),
     [
