@@ -55,8 +55,8 @@ def test_an_excursion_is_no_error() -> None:
 
 def test_scale_and_speed_agree() -> None:
     positions = loops()
-    # Just inside the usual range, and too fast once the path is as large as the room.
-    positions[250] = positions[250] + (0, 60)
+    # Not so far as to be left out; the path grows as it goes.
+    positions[250] = (560, 200)
     slow = fitted(recorded(positions), FREE, None)
     found = fitted(recorded(positions), FREE, 2.0)
     assert not slow.too_fast.any()
@@ -64,3 +64,15 @@ def test_scale_and_speed_agree() -> None:
     speed = np.hypot(*np.diff(np.delete(found.positions, 250, axis=0), axis=0).T) * 10
     assert speed.max() < 2
     assert np.ptp(np.delete(found.positions, 250, axis=0)[:, 0]) == pytest.approx(4)
+
+
+def test_doubtful_samples_do_not_make_the_path_so_small_that_they_are_slow() -> None:
+    positions, doubtful = loops(), np.zeros(1000, dtype=bool)
+    positions[600], doubtful[600] = (580, 200), True
+    way = np.hypot(*(positions[600] - positions[[599, 601]]).T).min()
+    true, small = 4 / 200, 4 / 380
+    fastest = way * (true + small) / 2 / 0.1
+    found = fitted(recorded(positions, doubtful), FREE, fastest)
+    assert np.flatnonzero(found.too_fast).tolist() == [600]
+    assert found.scale == pytest.approx(true, rel=1e-3)
+    assert not fitted(recorded(positions), FREE, fastest).too_fast.any()

@@ -174,7 +174,9 @@ def pixels(lost: dict[int, tuple[float, float]], count: int = 1500) -> dict[str,
 @pytest.mark.parametrize("told", [False, True])
 def test_what_a_tracker_writes_where_it_lost_the_animal_does_not_decide_the_fit(save, told: bool) -> None:  # noqa: FBT001
     true = replay(Replay(path=save(**pixels({})), fit=True))
-    path = save(**pixels(dict.fromkeys(range(7, 1500, 100), (1023, 1023))))
+    heading = np.arange(1500) / 125
+    heading[7::100] += 1.5
+    path = save(**pixels(dict.fromkeys(range(7, 1500, 100), (1023, 1023))), heading=heading)
     if told:
         walk = replay(Replay(path=path, fit=True, missing=1023))
         assert walk.notes["missing"] == 15
@@ -189,6 +191,7 @@ def test_what_a_tracker_writes_where_it_lost_the_animal_does_not_decide_the_fit(
     # A chord of two samples, in a curve.
     bend = np.hypot(150, 150 * 1.37**2) * true.notes["fitted_scale"] * 0.04**2 / 2
     assert np.hypot(*(walk.poses - true.poses).T[:2]).max() < bend
+    np.testing.assert_allclose(np.exp(1j * walk.poses[:, 2]), np.exp(1j * walk.times / 5), atol=1e-9)
 
 
 def test_without_fit_doubtful_samples_are_kept_and_told(save) -> None:
