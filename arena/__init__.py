@@ -10,7 +10,7 @@ from arena.bodies.heavy_disc import HeavyDisc
 from arena.bodies.neck import Neck
 from arena.bodies.rail import Rail
 from arena.bodies.turntable import Turntable
-from arena.errors import ArenaError
+from arena.errors import ArenaError, TrackWarning
 from arena.exploration import explore
 from arena.eye.camera import Camera
 from arena.eye.overhead import Overhead
@@ -24,6 +24,7 @@ from arena.motions.replay import Replay
 from arena.motions.rotation import Rotation
 from arena.motions.track import Track
 from arena.recordings.recording import Recording
+from arena.recordings.tracks import RecordedPath, read_track
 from arena.rooms.arena import Arena, gallery
 from arena.rooms.light import Light
 from arena.rooms.parts import Block, Box, Pillar, Source, Wall
@@ -55,17 +56,20 @@ __all__ = [
     "Pillar",
     "Policy",
     "Rail",
+    "RecordedPath",
     "Recording",
     "Replay",
     "Rotation",
     "Source",
     "Track",
+    "TrackWarning",
     "Turntable",
     "Walk",
     "Wall",
     "explore",
     "gallery",
     "journeys",
+    "read_track",
 ]
 
 # Of the extra `gym`. gymnasium 1 reads no entry points, so whoever imports the arena has the environment.

@@ -1,4 +1,4 @@
-"""What `arena` raises when it is given something it cannot use."""
+"""What `arena` raises when it is given something it cannot use, and its warnings."""
 
 
 class ArenaError(ValueError):
@@ -7,3 +7,7 @@ class ArenaError(ValueError):
 
 class NoSuchViewError(ArenaError, IndexError):
     """A view is asked for that a recording does not have."""
+
+
+class TrackWarning(UserWarning):
+    """Samples of an animal's track are doubtful, or were judged lost, bridged or moved; it says which."""

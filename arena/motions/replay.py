@@ -1,5 +1,6 @@
 """Replay of an animal's recorded path."""
 
+import warnings
 from pathlib import Path
 from typing import Annotated, ClassVar
 
@@ -12,23 +13,26 @@ from shapely.geometry.base import BaseGeometry
 from arena.angles import wrap_angle
 from arena.bodies.base import TOLERANCE, Body, check_starts, wrapped
 from arena.bodies.disc import Disc
-from arena.errors import ArenaError
+from arena.errors import ArenaError, TrackWarning
 from arena.motions.base import Walk
+from arena.motions.fitting import fitted
 from arena.motions.locomotion import Point, free_space
-from arena.motions.paths import Positions, RecordedPath, Times, read_joints, read_path
+from arena.motions.paths import read_joints
+from arena.recordings.track_format import Above, TrackFormat
+from arena.recordings.tracks import Positions, RecordedPath, Times, read_as
 from arena.rooms.arena import Arena
-from arena.settings import Settings
 
 LATE = 1.5
 """Samples further apart than this many median intervals leave a gap."""
 MOST = 10_000_000
 """Samples that may be interpolated."""
 
-_Above = Annotated[float, Field(ge=1e-6, le=1e6)]
 
+class Replay(TrackFormat):
+    """Goes where an animal went: see `arena.read_track` for the files.
 
-class Replay(Settings):
-    """Goes where an animal went: see `arena.motions.paths.read_path` for the files.
+    How they are to be read is told by the parameters of `arena.recordings.track_format.TrackFormat`, all of
+    which are parameters here, too: `Replay(path="rat.csv", bodypart="nose", rate=30, y_down=True, fit=True)`.
 
     Another body than a disc goes through its recorded configurations, all of which must be free: the file has
     `t` (s) and a column for each axis by its name, such as `joint_1` (`arena.motions.paths.read_joints`).
@@ -38,22 +42,24 @@ class Replay(Settings):
 
     All views are samples of the path, interpolated ones among them. The notes of the walk tell how many
     `samples` the file has, how many lost ones were `trimmed` from its ends, how many `gaps` there are, the
-    `longest_gap_s`, how many samples were `interpolated` for them, and how many positions were `clipped`.
+    `longest_gap_s`, how many samples were `interpolated` for them, and how many positions were `clipped`;
+    the others are those of `RecordedPath.notes` and, with `fit`, the `fitted_scale`, m per unit, and how many
+    samples were `left_out`.
 
     Parameters
     ----------
     path
-        CSV or NPZ file.
-    scale, offset
-        A position p of the file is `scale` * p + `offset` in the arena, m.
+        The file.
+    offset
+        Added to positions in m, which `scale`, `calibration` and `y_down` make of the file's.
     fit
-        Scale and move the path so that it just fits the box around the body's free space.
+        Scale and move the path so that it just fits the box around the body's free space. Doubtful samples
+        and those far from all others are left out, with a `TrackWarning`, and `fastest` is of the room.
     clip
         Move positions that are not free to the nearest that is; else they are an error.
     interval, view_every_m
         A view is taken at the first sample in every `interval` s, or after every `view_every_m` m of the
-        path; at
-        every sample when both are None.
+        path; at every sample when both are None.
     smoothing
         Time over which the direction of motion is taken, s.
     still
@@ -69,20 +75,19 @@ class Replay(Settings):
     any_body: ClassVar[bool] = True
 
     path: Annotated[Path, PlainSerializer(str)]
-    scale: _Above = 1.0
     offset: Point = (0.0, 0.0)
     fit: bool = False
     clip: bool = False
-    interval: _Above | None = None
-    view_every_m: _Above | None = None
-    smoothing: _Above = 0.25
+    interval: Above | None = None
+    view_every_m: Above | None = None
+    smoothing: Above = 0.25
     still: Annotated[float, Field(ge=0, le=100)] = 0.02
 
     @model_validator(mode="after")
     def _agree(self) -> "Replay":
         if self.interval is not None and self.view_every_m is not None:
             raise ValueError("both interval and view_every_m are given; choose one")
-        if self.fit and (self.scale, self.offset) != (1.0, (0.0, 0.0)):
+        if self.fit and (self.metres_per_unit, self.offset) != ((1.0, 1.0), (0.0, 0.0)):
             raise ValueError("fit finds scale and offset itself; leave them out")
         return self
 
@@ -96,9 +101,10 @@ class Replay(Settings):
         """
         if not isinstance(body, Disc):
             return self._joints(arena, body, views)
-        recorded = read_path(self.path)
+        free = free_space(arena, body)
+        recorded = self._fitted(free) if self.fit else read_as(self.path, self)
         times, positions, notes = _bridged(recorded)
-        positions = self._placed(positions, free_space(arena, body))
+        positions += self.offset
         if recorded.headings is None:
             headings = self._ahead(times, positions)
         else:
@@ -111,24 +117,42 @@ class Replay(Settings):
 
     def _joints(self, arena: Arena, body: Body, views: int | None) -> Walk:
         """Go through recorded configurations."""
-        if self.fit or self.clip or (self.scale, self.offset) != (1.0, (0.0, 0.0)):
-            raise ArenaError("scale, offset, fit and clip are of a disc's path; leave them out")
+        usual = TrackFormat()
+        given = [name for name in TrackFormat.model_fields if getattr(self, name) != getattr(usual, name)]
+        if self.fit or self.clip or given or self.offset != (0.0, 0.0):
+            raise ArenaError(
+                f"{', '.join([*given, 'offset', 'fit'])} and clip are of a disc's path; leave them out"
+            )
         times, joints = read_joints(self.path, [axis.name for axis in body.axes])
         taken = self._taken(times, body.camera_poses(joints)[:, :2], views)
         there = wrapped(body, joints[taken])
         check_starts(body, arena, there)
         return Walk(times[taken] - times[0], there)
 
-    def _placed(self, positions: Positions, free: BaseGeometry) -> Positions:
-        """Bring the path into the room."""
-        if not self.fit:
-            return self.scale * positions + self.offset
-        low, high = positions.min(axis=0), positions.max(axis=0)
-        room = np.reshape(free.bounds, (2, 2))
-        sides = zip(room[1] - room[0], high - low, strict=True)
-        scale = min((side / length for side, length in sides if length > 0), default=1.0)
-        placed: np.ndarray = (positions - (low + high) / 2) * scale + room.mean(axis=0)
-        return placed
+    def _fitted(self, free: BaseGeometry) -> RecordedPath:
+        """Read the path and bring it into the room; the speed is that in the room."""
+        unhurried = self.model_copy(update={"fastest": None})
+        recorded = read_as(self.path, unhurried, warn=self.fastest is None)
+        placed, scale, left_out, fast = fitted(recorded, free, self.fastest)
+        notes = {**recorded.notes, "fitted_scale": scale}
+        if self.fastest is not None:
+            notes |= {
+                "too_fast": int(fast.sum()),
+                "doubtful": int((recorded.doubtful & ~fast & ~left_out).sum()),
+            }
+        if left_out.any():
+            notes["left_out"] = int(left_out.sum())
+            warnings.warn(
+                f"{self.path}: fit leaves {notes['left_out']} of {len(left_out)} samples out, which are "
+                "doubtful or far from all others; they become gaps",
+                TrackWarning,
+                stacklevel=3,
+            )
+        headings = recorded.headings
+        if headings is not None:
+            headings = np.where(left_out | fast, np.nan, headings)
+            headings = headings if np.isfinite(headings).any() else None
+        return recorded._replace(positions=placed, headings=headings, notes=notes)
 
     def _ahead(self, times: Times, positions: Positions) -> Times:
         """Give the direction of motion, rad, unwrapped."""
@@ -168,11 +192,13 @@ class Replay(Settings):
         outside = np.flatnonzero(~arena.is_free(positions, max(0.0, body.radius - TOLERANCE)))
         if len(outside) and not self.clip:
             x, y = positions[outside[0]]
+            width, height = np.ptp(positions, axis=0)
             raise ArenaError(
                 f"{self.path} leaves the free space of a body of radius {body.radius:g} m, "
                 f"first at ({x:.3f}, {y:.3f}) m and {times[outside[0]]:.3f} s, "
-                f"in {len(outside)} of {len(times)} samples; "
-                "fit or clip it, or take a wider arena or a smaller body"
+                f"in {len(outside)} of {len(times)} samples, and covers {width:.3g} by {height:.3g} m; "
+                "fit or clip it, give scale or calibration if its unit is no metre, "
+                "or take a wider arena or a smaller body"
             )
         kept = positions.copy()
         ways = shapely.shortest_line(shapely.points(positions[outside]), free_space(arena, body))
@@ -197,6 +223,7 @@ def _bridged(path: RecordedPath) -> tuple[Times, Positions, dict[str, object]]:
     fill = [np.linspace(times[g], times[g + 1], int(n) + 2)[1:-1] for g, n in zip(gaps, lost, strict=True)]
     dense = np.sort(np.concatenate([times, *fill]))
     notes: dict[str, object] = {
+        **path.notes,
         "samples": len(path.times),
         "trimmed": len(path.times) - int(known[-1] - known[0]) - 1,
         "gaps": len(gaps),

@@ -1,6 +1,7 @@
 """Commands about rooms and the ways through them."""
 
 import sys
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Literal
@@ -9,10 +10,11 @@ import cv2
 import numpy as np
 from cyclopts import Parameter
 
-from arena import Arena, Camera, Disc, explore, gallery
+from arena import Arena, Camera, Disc, TrackWarning, explore, gallery
 from arena.atomic import check_absent
 from arena.bodies.catalogue import bodies
 from arena.motions.catalogue import motions
+from arena.recordings.judged import judged
 from cogmap.atomic import atomic_write
 from cogmap.commands.common import Json, Seed, Told, tell
 from cogmap.errors import CogmapError
@@ -114,6 +116,8 @@ def _explore(
     Examples: `cogmap explore furnished --out walk.zarr`; `cogmap explore pillar --views 5000 --out p.zarr`;
     `cogmap explore furnished --motion rotation --camera perspective --out spin.zarr`;
     `cogmap explore open_field --motion replay --path rat.csv --fit --out rat.zarr`;
+    `cogmap explore open_field --motion replay --path dlc.csv --fit --set motion.bodypart=nose
+    --set motion.rate=30 --set motion.least_likelihood=0.9 --set motion.y_down=true --out rat.zarr`;
     `cogmap explore furnished --motion babble --body arm --camera overhead --set body.limits=one --out arm`.
 
     Parameters
@@ -125,8 +129,9 @@ def _explore(
     odorant
         Which odour `chemotaxis` climbs, from 0.
     path
-        CSV or NPZ file of the path that `replay` follows: columns t (s), x, y (m) and, optionally, heading
-        (rad) or heading_deg.
+        CSV, Parquet or NPZ file of the path that `replay` follows: columns t (s), x, y (m) and, optionally,
+        heading (rad) or heading_deg. Other columns, units and lost samples are told by `--set`, such as
+        `motion.x=nose_x`, `motion.missing=[0, 1023]`, `motion.calibration=[[80, 40], [560, 40], 1.2]`.
     fit
         Whether `replay` scales and moves the path to fit the room.
     views
@@ -159,5 +164,8 @@ def _explore(
         out=out,
         progress=sys.stderr.isatty(),
     )
+    said = judged(recording.attributes["walk"])
+    if said:
+        warnings.warn(f"{path or motion}: {said}", TrackWarning, stacklevel=2)
     odorants = recording.require("odours").shape[1]
     tell({"recording": str(out), "views": len(recording), "odorants": odorants}, as_json=as_json)

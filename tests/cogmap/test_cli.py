@@ -84,6 +84,7 @@ def test_learn_refines_or_says_why_not(run, folder: Path, tmp_path: Path) -> Non
     assert CognitiveMap.load(tmp_path / "map").relaxed_places_ is None
 
 
+@pytest.mark.filterwarnings("always::arena.TrackWarning")
 @pytest.mark.parametrize(
     ("words", "views"),
     [
@@ -118,6 +119,61 @@ def test_every_motion_explores(
     assert status == 0, err
     assert json.loads(out)["views"] == (views or 3)
     assert Recording.open("x.zarr").attributes["motion"]["kind"] == str(words[0]).capitalize()
+
+
+@pytest.mark.filterwarnings("always::arena.TrackWarning")
+def test_how_a_track_is_read_is_set_and_what_was_judged_is_said(run, tmp_path: Path) -> None:
+    angle = np.linspace(0, 6 * np.pi, 200)
+    x, y = 300 + 100 * np.sin(angle), 200 + 80 * np.cos(angle)
+    x[[50, 120]] = y[[50, 120]] = 1023
+    rows = "".join(
+        f"{k};{a};{b};{c}\n" for k, a, b, c in zip(range(200), x, y, [0.2] * 3 + [1] * 197, strict=True)
+    )
+    track = tmp_path / "rat.TXT"
+    track.write_text("Frame;nose_x;nose_y;p\n" + rows.replace(".", ","), encoding="utf-16")
+    told = {
+        "x": "nose_x", "y": "nose_y", "rate": 25, "likelihood": "p", "least_likelihood": 0.5, "fastest": 5,
+        "calibration": "[[0, 0], [100, 0], 1.0]", "offset": "[-3, 2]", "missing": "[0, 1023]",
+        "y_down": "true",
+    }  # fmt: skip
+    words = [word for key, value in told.items() for word in ("--set", f"motion.{key}={value}")]
+    go = [
+        "explore",
+        "open_field",
+        "--motion",
+        "replay",
+        "--path",
+        track,
+        *words,
+        "--width",
+        36,
+        "--height",
+        6,
+    ]
+    status, out, err = run(*go, "--out", tmp_path / "rat.zarr", "--json")
+    assert status == 0, err
+    assert json.loads(out)["views"] == 197
+    assert err == (
+        f"cogmap: {track}: of 200 samples 5 are lost (2 missing as told, 3 unlikely); 2 gaps bridged by 2 "
+        "samples, the longest of 0.08 s; 3 trimmed from the ends; scaled by 0.01 m; y turned upwards\n"
+    )
+    walk = Recording.open(tmp_path / "rat.zarr")
+    assert walk.attributes["walk"].items() >= {"missing": 2, "unlikely": 3, "too_fast": 0}.items()
+    lost = [0, 1, 2, 50, 120]
+    wanted = np.delete(np.stack([x / 100 - 3, 2 - y / 100], axis=1), lost, axis=0)
+    np.testing.assert_allclose(np.delete(walk.poses[:, :2], [47, 117], axis=0), wanted)
+    assert run(*go, "--out", tmp_path / "rat.zarr")[2] == err
+    refused(
+        run(*go, "--set", "motion.y_dwn=true", "--out", tmp_path / "b.zarr"), "did you mean 'motion.y_down'"
+    )
+    refused(
+        run(*go, "--set", "motion.fastest=0.01", "--out", tmp_path / "b.zarr"),
+        "steps are faster",
+        "calibration",
+    )
+    refused(
+        run(*go, "--set", "motion.x=x", "--out", tmp_path / "b.zarr"), "has no column x; it has Frame, nose_x"
+    )
 
 
 def test_arena_shows_a_room(run, tmp_path: Path) -> None:

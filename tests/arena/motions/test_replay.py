@@ -5,7 +5,7 @@ import pytest
 
 from arena.bodies.arm import Arm
 from arena.bodies.disc import Disc
-from arena.errors import ArenaError
+from arena.errors import ArenaError, TrackWarning
 from arena.motions.base import Walk
 from arena.motions.replay import Replay
 from arena.rooms.arena import Arena
@@ -163,6 +163,63 @@ def test_clipped_to_the_nearest_free_place(save) -> None:
     np.testing.assert_allclose(np.hypot(*around[:, :2].T), 0.51, atol=0.003)
 
 
+def pixels(lost: dict[int, tuple[float, float]], count: int = 1500) -> dict[str, np.ndarray]:
+    t = np.arange(count) / 25
+    pos = np.stack([250 + 150 * np.sin(t), 220 + 150 * np.sin(1.37 * t)], axis=1)
+    for at, place in lost.items():
+        pos[at] = place
+    return {"t": t, "pos": pos}
+
+
+@pytest.mark.parametrize("told", [False, True])
+def test_what_a_tracker_writes_where_it_lost_the_animal_does_not_decide_the_fit(save, told: bool) -> None:  # noqa: FBT001
+    true = replay(Replay(path=save(**pixels({})), fit=True))
+    heading = np.arange(1500) / 125
+    heading[7::100] += 1.5
+    path = save(**pixels(dict.fromkeys(range(7, 1500, 100), (1023, 1023))), heading=heading)
+    if told:
+        walk = replay(Replay(path=path, fit=True, missing=1023))
+        assert walk.notes["missing"] == 15
+    else:
+        with pytest.warns(TrackWarning) as said:
+            walk = replay(Replay(path=path, fit=True))
+        assert "15 of 1500 samples are exactly (1023, 1023)" in str(said[0].message)
+        assert "fit leaves 15 of 1500 samples out" in str(said[1].message)
+        assert (walk.notes["doubtful"], walk.notes["left_out"]) == (15, 15)
+    assert walk.notes["fitted_scale"] == pytest.approx(true.notes["fitted_scale"])
+    assert (walk.notes["gaps"], walk.notes["interpolated"], walk.notes["clipped"]) == (15, 15, 0)
+    # A chord of two samples, in a curve.
+    bend = np.hypot(150, 150 * 1.37**2) * true.notes["fitted_scale"] * 0.04**2 / 2
+    assert np.hypot(*(walk.poses - true.poses).T[:2]).max() < bend
+    np.testing.assert_allclose(np.exp(1j * walk.poses[:, 2]), np.exp(1j * walk.times / 5), atol=1e-9)
+
+
+def test_without_fit_doubtful_samples_are_kept_and_told(save) -> None:
+    path = save(**pixels({70: (1023, 1023), 900: (1023, 1023)}))
+    room = {"scale": (0.005, 0.004), "offset": (-1.25, -0.9)}
+    with (
+        pytest.warns(TrackWarning, match=r"pass missing=1023 if so"),
+        pytest.raises(ArenaError, match=r"in 2 of 1500 samples, and covers .* give scale or calibration"),
+    ):
+        replay(Replay(path=path, **room))
+    walk = replay(Replay(path=path, missing=[0, 1023], fastest=5, **room))
+    wanted = np.delete(pixels({})["pos"], [70, 900], axis=0) * (0.005, 0.004) + (-1.25, -0.9)
+    np.testing.assert_allclose(np.delete(walk.poses[:, :2], [70, 900], axis=0), wanted)
+    told = {"missing": 2, "too_fast": 0, "metres_per_unit": [0.005, 0.004], "gaps": 2, "interpolated": 2}
+    assert walk.notes.items() >= told.items()
+
+
+def test_with_fit_the_speed_is_of_the_room(save) -> None:
+    wild = {at: (250 + 220 * np.cos(at), 220 + 220 * np.sin(at)) for at in range(7, 1500, 90)}
+    path = save(**pixels(wild), heading=np.arange(1500) / 25)
+    walk = replay(Replay(path=path, fit=True, fastest=3))
+    assert (walk.notes["too_fast"], walk.notes["gaps"], walk.notes["doubtful"]) == (17, 17, 0)
+    assert "left_out" not in walk.notes
+    assert (np.hypot(*np.diff(walk.poses[:, :2], axis=0).T) <= 3 * np.diff(walk.times) + 1e-9).all()
+    np.testing.assert_allclose(np.ptp(walk.poses[:, 1]), 2.98, atol=1e-6)
+    np.testing.assert_allclose(np.exp(1j * walk.poses[:, 2]), np.exp(1j * walk.times), atol=1e-9)
+
+
 def test_the_random_numbers_do_not_matter(save) -> None:
     motion, arena = Replay(path=save(**circle())), Arena.load("open_field")
     first, other = (motion.walk(arena, SMALL, None, np.random.default_rng(seed)) for seed in (0, 1))
@@ -190,6 +247,8 @@ def test_body_that_fits_nowhere_is_refused(save) -> None:
         ({"interval": 0.1, "view_every_m": 0.1}, "choose one"),
         ({"fit": True, "scale": 2.0}, "leave them out"),
         ({"fit": True, "offset": (1.0, 0.0)}, "leave them out"),
+        ({"fit": True, "calibration": ((0, 0), (1, 0), 2.0)}, "leave them out"),
+        ({"missing": "lost"}, "missing"),
         ({"scale": 0.0}, "scale"),
         ({"interval": np.nan}, "interval"),
         ({"offset": (np.inf, 0.0)}, "offset"),
@@ -211,6 +270,7 @@ def test_joints_go_through_their_recorded_configurations(tmp_path: Path) -> None
     for fields, body, message in (
         ({}, Arm(links=(0.5, 0.5, 0.5)), "no column joint_3"),
         ({"clip": True}, arm, "are of a disc's path"),
+        ({"rate": 30, "scale": 2}, arm, "rate, scale, offset, fit and clip are of a disc's path"),
         ({}, Arm(limits=(None, (-1.0, 1.0))), "cannot start"),
     ):
         with pytest.raises(ArenaError, match=message):
