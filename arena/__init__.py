@@ -24,6 +24,7 @@ from arena.motions.replay import Replay
 from arena.motions.rotation import Rotation
 from arena.motions.track import Track
 from arena.recordings.recording import Recording
+from arena.recordings.rescue import rescue
 from arena.rooms.arena import Arena, gallery
 from arena.rooms.light import Light
 from arena.rooms.parts import Block, Box, Pillar, Source, Wall
@@ -66,6 +67,7 @@ __all__ = [
     "explore",
     "gallery",
     "journeys",
+    "rescue",
 ]
 
 # Of the extra `gym`. gymnasium 1 reads no entry points, so whoever imports the arena has the environment.

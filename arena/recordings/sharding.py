@@ -62,11 +62,11 @@ def read_images(
         places = _places(stream, rows)
         if places is None:
             raise ValueError("the file is not whole")
-        for image, (offset, size) in zip(out, places[chosen].tolist(), strict=True):
+        for number, image, (offset, size) in zip(chosen, out, places[chosen].tolist(), strict=True):
             stream.seek(offset)
             frame = stream.read(size)
             if _checksum(frame[:-4]) != frame[-4:]:
-                raise ValueError("an image does not match its checksum")
+                raise ValueError(f"view {rows.start + number} does not match its checksum")
             blosc.decode(frame[:-4], image)
 
 
