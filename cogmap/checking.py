@@ -22,7 +22,7 @@ from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.even_memory import EvenMemory
 from cogmap.map.storage import VERSIONS, Kind, read_state
 from cogmap.sweeps import Plan
-from cogmap.sweeps.ledger import MARK, read_mark, read_record
+from cogmap.sweeps.ledger import LAYOUT, MARK, all_of, read_mark, read_record
 
 _CLASSES = {
     "map": CognitiveMap,
@@ -142,9 +142,9 @@ def _result(path: Path) -> Checked:
 
 
 def _sweep(path: Path) -> Checked:
-    damage = list[str]()
+    damage, advice, names = list[str](), "", None
     try:
-        read_mark(path / MARK)
+        names = read_mark(path / MARK)["points"]
     except CogmapError as error:
         damage.append(str(error))
     # names that begin with a dot are of those that are being written
@@ -156,13 +156,15 @@ def _sweep(path: Path) -> Checked:
         except CogmapError as error:
             damage.append(str(error))
     parts = {"points": f"{sound} of {len(points)}"}
-    advice = ""
-    if (path / "table.csv").exists():
+    if names is not None and all_of(point.stem for point in points) != names:
+        damage.append(f"{path} lacks points")
+        advice = "the same command does them"
+    elif (path / "table.csv").exists():
         whole, lost = compare_sums(path)
         parts["files"] = f"{len(whole)} of {len(whole) + len(lost)}"
-        advice = "the same command writes the table and its figures again" if lost else ""
         damage += lost
-    return Checked(path, "sweep", 2, parts, tuple(damage), advice)
+        advice = "the same command writes the table and its figures again" if lost else ""
+    return Checked(path, "sweep", LAYOUT, parts, tuple(damage), advice)
 
 
 def _toml(path: Path) -> Checked:

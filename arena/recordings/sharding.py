@@ -16,6 +16,8 @@ from arena.atomic import atomic_write
 
 SHARD = 256
 """Views in a file."""
+_HEAD = 8
+"""Bytes at its beginning: which shard it is. The index leaves them out, so that zarr does, too."""
 _INDEX = 16 * SHARD + 4
 """Bytes at its end: offset and size of every view, and a checksum."""
 
@@ -39,9 +41,9 @@ def file(folder: Path, rows: slice) -> Path:
 
 
 def is_complete(folder: Path, rows: slice) -> bool:
-    """Whether a shard of the array in this folder is there, to its last byte."""
+    """Whether a shard of the array in this folder is there, to its last byte, and no other in its place."""
     path = file(folder, rows)
-    if not path.is_file() or path.stat().st_size < _INDEX:
+    if not path.is_file() or path.stat().st_size < _HEAD + _INDEX:
         return False
     with path.open("rb") as stream:
         return _places(stream, rows) is not None
@@ -71,12 +73,14 @@ def read_images(
 
 
 def _places(stream: BinaryIO, rows: slice) -> Int[np.ndarray, "shard 2"] | None:
-    """Give offset and size of every image of a shard; None when it is not whole."""
+    """Give offset and size of every image of a shard; None when it is not whole, or another one."""
+    is_this = stream.read(_HEAD) == _head(rows)
     whole = stream.seek(0, os.SEEK_END)
     stream.seek(-_INDEX, os.SEEK_END)
     index, checksum = stream.read(_INDEX - 4), stream.read(4)
     places = np.frombuffer(index, "<u8").reshape(SHARD, 2)[: rows.stop - rows.start].astype(np.int64)
-    return places if checksum == _checksum(index) and whole == places[:, 1].sum() + _INDEX else None
+    is_whole = checksum == _checksum(index) and whole == _HEAD + places[:, 1].sum() + _INDEX
+    return places if is_this and is_whole else None
 
 
 def write_shards(
@@ -109,22 +113,27 @@ def write_shards(
 
 def write_shard(folder: Path, rows: slice, images: UInt8[np.ndarray, "shard height width 3"]) -> None:
     """Write one shard; see `write_shards`, and call it from any thread but the main one."""
-    _write(file(folder, rows), images)
+    _write(file(folder, rows), _head(rows), images)
 
 
-def _write(path: Path, images: np.ndarray) -> None:
+def _write(path: Path, head: bytes, images: np.ndarray) -> None:
     described = codecs()[0]
     blosc = Blosc(described.cname.value, described.clevel, Blosc.NOSHUFFLE)
     sizes = np.empty(len(images), "<u8")
     # Frames go out by the megabyte: a call of the system for each would take as long as its checksum.
     with atomic_write(path) as fresh, fresh.open("wb", buffering=2**20) as stream:
+        stream.write(head)
         for number, image in enumerate(np.ascontiguousarray(images)):
             frame: bytes = blosc.encode(image)
             sizes[number] = stream.write(frame) + stream.write(_checksum(frame))
         # Offset and size of every image that a shard has room for; all ones where none is.
         index = np.full((SHARD, 2), 2**64 - 1, "<u8")
-        index[: len(sizes)] = np.stack([np.cumsum(sizes) - sizes, sizes], axis=1)
+        index[: len(sizes)] = np.stack([_HEAD + np.cumsum(sizes) - sizes, sizes], axis=1)
         stream.writelines([index.tobytes(), _checksum(index.tobytes())])
+
+
+def _head(rows: slice) -> bytes:
+    return int(rows.start // SHARD).to_bytes(_HEAD, "little")
 
 
 def _checksum(content: bytes) -> bytes:

@@ -4,7 +4,7 @@ import errno
 import hashlib
 import json
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,8 +22,9 @@ from cogmap.sweeps.points import Point, name_of
 MARK = "sweep.json"
 """What marks a folder as that of a sweep."""
 
-LAYOUT = "cogmap sweep 2"
-"""Of the folder."""
+LAYOUT = 2
+"""Version of the folder."""
+FORMAT = f"cogmap sweep {LAYOUT}"
 
 KEPT = "all points that are finished are kept, and the same command goes on from there"
 """What a sweep that ends early says."""
@@ -111,7 +112,7 @@ class Ledger:
 
     def _lay_out(self, plan: Plan, points: Sequence[Point]) -> None:
         mark = self.folder / MARK
-        names = hashlib.sha256("".join(sorted(point.digest for point in points)).encode()).hexdigest()
+        names = all_of(point.digest for point in points)
         if mark.exists():
             found = read_mark(mark)
             if found["points"] != names:
@@ -121,11 +122,16 @@ class Ledger:
                 )
         else:
             described = plan.model_dump(mode="json", by_alias=True, exclude_defaults=True)
-            header = {"format": LAYOUT, "points": names, **described}
+            header = {"format": FORMAT, "points": names, **described}
             with self.replacing(mark) as fresh:
                 fresh.write_text(sealed(header), encoding="utf-8")
         with disk_errors(self.folder):
             self.walks.mkdir(exist_ok=True)
+
+
+def all_of(names: Iterable[str]) -> str:
+    """Give one digest of the names of points, in whatever order."""
+    return hashlib.sha256("".join(sorted(names)).encode()).hexdigest()
 
 
 def sealed(record: Record) -> str:
@@ -142,9 +148,9 @@ def read_mark(path: Path) -> Record:
         For a file that is no longer what was written, or of another layout.
     """
     found = _read(path)
-    if isinstance(found, dict) and found.get("format") not in (LAYOUT, None):
+    if isinstance(found, dict) and found.get("format") not in (FORMAT, None):
         raise CogmapError(
-            f"{path.parent} holds a sweep of layout {found['format']!r}, not {LAYOUT!r}; choose another "
+            f"{path.parent} is of the format {found['format']!r}, not {FORMAT!r}; choose another "
             "folder, or go on with the program that began it"
         )
     if not _is_sealed(found):
