@@ -6,8 +6,8 @@ import json
 import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
-from typing import get_args
 
 from arena import Arena, ArenaError, Recording
 from arena.recordings import storage
@@ -24,11 +24,11 @@ from cogmap.map.storage import VERSIONS, Kind, read_state
 from cogmap.sweeps import Plan
 from cogmap.sweeps.ledger import LAYOUT, MARK, all_of, read_mark, read_record
 
-_CLASSES = {
-    "map": CognitiveMap,
-    "memory": EvenMemory,
-    "motor": MotorModel,
-    "coordinates": GeneralisedCoordinates,
+_LOADERS: dict[Kind, Callable[[Path], object]] = {
+    "map": CognitiveMap.load,
+    "memory": EvenMemory.load,
+    "motor": MotorModel.load,
+    "coordinates": GeneralisedCoordinates.load,
 }
 
 
@@ -77,15 +77,15 @@ def check(path: str | Path) -> Checked:
     path = Path(path)
     if path.suffix == ".toml" and path.is_file():
         return _toml(path)
-    checks: dict[str, Callable[[], Checked]] = {
-        "zarr.json": lambda: _recording(path),
-        **{f"{kind}.json": lambda kind=kind: _state(path, kind) for kind in get_args(Kind)},
-        METRICS: lambda: _result(path),
-        MARK: lambda: _sweep(path),
+    checks: dict[str, Callable[[Path], Checked]] = {
+        "zarr.json": _recording,
+        **{f"{kind}.json": partial(_state, kind=kind) for kind in _LOADERS},
+        METRICS: _result,
+        MARK: _sweep,
     }
     for mark, checked in checks.items():
         if (path / mark).is_file():
-            return checked()
+            return checked(path)
     if not path.exists():
         raise CogmapError(f"there is nothing at {path}; check the path")
     raise CogmapError(
@@ -121,7 +121,7 @@ def _recording(path: Path) -> Checked:
 def _state(path: Path, kind: Kind) -> Checked:
     try:
         weights, settings, learnt = read_state(path, kind=kind)
-        _CLASSES[kind].load(path)
+        _LOADERS[kind](path)
     except CogmapError as error:
         return Checked(path, kind, damage=(str(error),))
     numbers = {"weights": weights, "settings": settings, "learnt": learnt}

@@ -21,7 +21,7 @@ def test_two_hundred_flipped_bits(judge: Judge, capfd: pytest.CaptureFixture[str
 def test_files_that_are_lost_cut_or_strange(judge: Judge) -> None:
     for kind, file in judge.files:
         sound = file.read_bytes()
-        for damaged in (None, b"", sound[: len(sound) // 2], sound[:-1], sound + b"\0"):
+        for damaged in (None, sound[: len(sound) // 2], sound[:-1], sound + b"\0"):
             if damaged is None:
                 file.unlink()
             else:

@@ -10,7 +10,7 @@ from jaxtyping import Bool
 from arena.errors import ArenaError
 from arena.recordings import storage
 from arena.recordings.recording import Recording, from_columns
-from arena.recordings.sharding import is_complete, shards
+from arena.recordings.sharding import file, is_complete, shards
 from arena.recordings.storage import DAMAGE, StoredViews, first_line
 
 
@@ -44,8 +44,7 @@ def examine(path: str | Path) -> Examined:
     attributes, arrays, sound = storage.read_head(path)
     damage = [] if sound else ["its attributes are not what was written"]
     columns, views, whole = dict[str, np.ndarray](), None, np.zeros(0, bool)
-    # of attributes that are damaged, this may be anything
-    for name, told in arrays.items() if isinstance(arrays, dict) else ():
+    for name, told in arrays.items():
         try:
             if name == "views":
                 views = storage.find_views(path, arrays)
@@ -57,14 +56,14 @@ def examine(path: str | Path) -> Examined:
     if views is not None:
         whole = np.zeros(len(views), bool)
         for rows in shards(len(views)):
-            file = storage.file(path / "views", rows)
-            if not file.exists():
+            shard = file(path / "views", rows)
+            if not shard.exists():
                 unwritten += rows.stop - rows.start
             elif is_complete(path / "views", rows):
                 whole[rows] = _readable(views, rows)
-            if file.exists() and not whole[rows].all():
+            if shard.exists() and not whole[rows].all():
                 lost = rows.start + np.flatnonzero(~whole[rows])
-                damage.append(f"{len(lost)} of the views in {file}, from view {lost[0]} on, cannot be read")
+                damage.append(f"{len(lost)} of the views in {shard}, from view {lost[0]} on, cannot be read")
     return Examined(views, whole, columns, attributes if sound else {}, unwritten, tuple(damage))
 
 

@@ -167,7 +167,8 @@ def read_head(path: Path) -> Head:
     written = attributes.pop("digest", None)
     sound = written == digest(described)
     del attributes["version"]
-    return Head(attributes, attributes.pop("arrays", {}), sound)
+    arrays: Any = attributes.pop("arrays", None)
+    return Head(attributes, arrays if isinstance(arrays, dict) else {}, sound)
 
 
 def load(path: Path) -> Stored:

@@ -1,6 +1,7 @@
 """The command that tells whether what was written is still what it was."""
 
 from pathlib import Path
+from typing import Any
 
 import arena
 from arena.atomic import check_absent
@@ -24,8 +25,14 @@ def _check(path: Path, /, *, rescue: Path | None = None, as_json: Json = False) 
     if rescue is not None:
         check_absent(rescue, CogmapError)
     found = check(path)
-    told = {"path": str(path), "kind": found.kind, "version": found.version, "whole": found.whole}
-    told |= {"parts": found.parts, "damage": list(found.damage)}
+    told: dict[str, Any] = {
+        "path": str(path),
+        "kind": found.kind,
+        "version": found.version,
+        "whole": found.whole,
+        "parts": found.parts,
+        "damage": list(found.damage),
+    }
     if rescue is not None:
         if found.kind != "recording":
             raise CogmapError(f"{path} is a {found.kind}, and only recordings are rescued")
