@@ -24,6 +24,7 @@ from arena.motions.replay import Replay
 from arena.motions.rotation import Rotation
 from arena.motions.track import Track
 from arena.recordings.recording import Recording
+from arena.recordings.rescue import rescue
 from arena.recordings.tracks import RecordedPath, read_track
 from arena.rooms.arena import Arena, gallery
 from arena.rooms.light import Light
@@ -70,6 +71,7 @@ __all__ = [
     "gallery",
     "journeys",
     "read_track",
+    "rescue",
 ]
 
 # Of the extra `gym`. gymnasium 1 reads no entry points, so whoever imports the arena has the environment.

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cogmap import cells, evaluation, features, graph, navigation, plots, shape, testing
+    from cogmap.checking import Checked, check
     from cogmap.control import MotorModel, PostureReacher, Reacher
     from cogmap.coordinates import GeneralisedCoordinates
     from cogmap.errors import (
@@ -27,6 +28,7 @@ __all__ = [
     "Activity",
     "BagOfWords",
     "Betti",
+    "Checked",
     "CogmapError",
     "CognitiveMap",
     "EvenMemory",
@@ -44,6 +46,7 @@ __all__ = [
     "VisualRoadmap",
     "betti",
     "cells",
+    "check",
     "evaluation",
     "features",
     "graph",
@@ -56,6 +59,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "checking": ("Checked", "check"),
     "control": ("MotorModel", "PostureReacher", "Reacher"),
     "coordinates": ("GeneralisedCoordinates",),
     "errors": ("CogmapError", "OpenSeamWarning", "UnlikeArithmeticWarning", "UntrustedMapWarning"),

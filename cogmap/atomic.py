@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
+from cogmap.digests import SUMS, sums
 from cogmap.errors import CogmapError
 
 METRICS = "metrics.json"
@@ -30,6 +31,8 @@ def check_replaceable(out: Path, mark: str, wanted: str, beside: tuple[str, ...]
 def result_folder(out: Path) -> Iterator[Path]:
     """Give a folder to fill, which takes the place of `out` at the end; a failure changes nothing.
 
+    `SHA256SUMS` in it has the digests of all its files.
+
     Raises
     ------
     CogmapError
@@ -39,3 +42,5 @@ def result_folder(out: Path) -> Iterator[Path]:
     with atomic_write(out) as folder:
         folder.mkdir()
         yield folder
+        files = [file for file in folder.rglob("*") if file.is_file()]
+        (folder / SUMS).write_text(sums(folder, files), encoding="utf-8")

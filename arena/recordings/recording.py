@@ -225,13 +225,8 @@ class Recording:
         except ArenaError as error:
             raise ArenaError(f"{path} is damaged: {error}") from None
         if missing:
-            count = views.shape[0]
-            present = count - sum(rows.stop - rows.start for rows in missing)
             command = "import" if "lens" in attributes else "explore"
-            raise ArenaError(
-                f"{path} is half-written: {present} of its {count} views are there; "
-                f"the same `{command}` command goes on where it stopped"
-            )
+            raise ArenaError(storage.say_what_is_missing(Path(path), len(views), missing, command))
         return cls(views=views, **_fields(columns), attributes=attributes)
 
     @property
@@ -240,6 +235,13 @@ class Recording:
         columns = {name: getattr(self, name) for name in _FIELDS}
         signals = {f"signals/{name}": values for name, values in self.signals.items()}
         return {name: values for name, values in columns.items() if values is not None} | signals
+
+
+def from_columns(
+    views: Images | StoredViews, columns: Mapping[str, np.ndarray], attributes: Mapping[str, Any]
+) -> Recording:
+    """Make a recording of views and of other arrays by their names on disk."""
+    return Recording(views=views, **_fields(columns), attributes=attributes)
 
 
 def _fields(columns: Mapping[str, Any]) -> dict[str, Any]:

@@ -16,6 +16,8 @@ from arena.atomic import atomic_write
 
 SHARD = 256
 """Views in a file."""
+_HEAD = 8
+"""Bytes at its beginning: which shard it is. The index leaves them out, so that zarr does, too."""
 _INDEX = 16 * SHARD + 4
 """Bytes at its end: offset and size of every view, and a checksum."""
 
@@ -42,9 +44,9 @@ def file(folder: Path, rows: slice) -> Path:
 
 
 def is_complete(folder: Path, rows: slice) -> bool:
-    """Whether a shard of the array in this folder is there, to its last byte."""
+    """Whether a shard of the array in this folder is there, to its last byte, and no other in its place."""
     path = file(folder, rows)
-    if not path.is_file() or path.stat().st_size < _INDEX:
+    if not path.is_file() or path.stat().st_size < _HEAD + _INDEX:
         return False
     with path.open("rb") as stream:
         return _places(stream, rows) is not None
@@ -65,21 +67,23 @@ def read_images(
         places = _places(stream, rows)
         if places is None:
             raise ValueError("the file is not whole")
-        for image, (offset, size) in zip(out, places[chosen].tolist(), strict=True):
+        for number, image, (offset, size) in zip(chosen, out, places[chosen].tolist(), strict=True):
             stream.seek(offset)
             frame = stream.read(size)
             if _checksum(frame[:-4]) != frame[-4:]:
-                raise ValueError("an image does not match its checksum")
+                raise ValueError(f"view {rows.start + number} does not match its checksum")
             blosc.decode(frame[:-4], image)
 
 
 def _places(stream: BinaryIO, rows: slice) -> Int[np.ndarray, "shard 2"] | None:
-    """Give offset and size of every image of a shard; None when it is not whole."""
+    """Give offset and size of every image of a shard; None when it is not whole, or another one."""
+    is_this = stream.read(_HEAD) == _head(rows)
     whole = stream.seek(0, os.SEEK_END)
     stream.seek(-_INDEX, os.SEEK_END)
     index, checksum = stream.read(_INDEX - 4), stream.read(4)
     places = np.frombuffer(index, "<u8").reshape(SHARD, 2)[: rows.stop - rows.start].astype(np.int64)
-    return places if checksum == _checksum(index) and whole == places[:, 1].sum() + _INDEX else None
+    is_whole = checksum == _checksum(index) and whole == _HEAD + places[:, 1].sum() + _INDEX
+    return places if is_this and is_whole else None
 
 
 def write_shards(
@@ -117,7 +121,7 @@ def write_shard(folder: Path, rows: slice, images: UInt8[np.ndarray, "shard heig
 
 def write_frames(folder: Path, rows: slice, frames: Iterable[bytes]) -> None:
     """Write one shard of `encoded` images as they come; what their source raises leaves none."""
-    _write(file(folder, rows), frames)
+    _write(file(folder, rows), _head(rows), frames)
 
 
 def encoded(image: UInt8[np.ndarray, "height width 3"]) -> bytes:
@@ -126,15 +130,20 @@ def encoded(image: UInt8[np.ndarray, "height width 3"]) -> bytes:
     return frame + _checksum(frame)
 
 
-def _write(path: Path, frames: Iterable[bytes]) -> None:
+def _write(path: Path, head: bytes, frames: Iterable[bytes]) -> None:
     sizes = list[int]()
     # Frames go out by the megabyte: a call of the system for each would take as long as its checksum.
     with atomic_write(path) as fresh, fresh.open("wb", buffering=2**20) as stream:
+        stream.write(head)
         sizes.extend(map(stream.write, frames))
         # Offset and size of every image that a shard has room for; all ones where none is.
         index = np.full((SHARD, 2), 2**64 - 1, "<u8")
-        index[: len(sizes)] = np.stack([np.cumsum(sizes) - sizes, sizes], axis=1)
+        index[: len(sizes)] = np.stack([_HEAD + np.cumsum(sizes) - sizes, sizes], axis=1)
         stream.writelines([index.tobytes(), _checksum(index.tobytes())])
+
+
+def _head(rows: slice) -> bytes:
+    return int(rows.start // SHARD).to_bytes(_HEAD, "little")
 
 
 def _checksum(content: bytes) -> bytes:

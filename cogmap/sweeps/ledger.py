@@ -4,22 +4,27 @@ import errno
 import hashlib
 import json
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from filelock import FileLock, Timeout
 
 from arena.atomic import atomic_write
 from cogmap.atomic import check_replaceable
+from cogmap.digests import digest
 from cogmap.errors import CogmapError
 from cogmap.sweeps.plan import Plan
-from cogmap.sweeps.points import Point
+from cogmap.sweeps.points import Point, name_of
 
 MARK = "sweep.json"
 """What marks a folder as that of a sweep."""
+
+LAYOUT = 2
+"""Version of the folder."""
+FORMAT = f"cogmap sweep {LAYOUT}"
 
 KEPT = "all points that are finished are kept, and the same command goes on from there"
 """What a sweep that ends early says."""
@@ -80,16 +85,7 @@ class Ledger:
         CogmapError
             For a file that is no longer what was written.
         """
-        path = self._path(point)
-        try:
-            record = json.loads(path.read_text(encoding="utf-8"))
-        except FileNotFoundError:
-            return None
-        except (OSError, ValueError):
-            record = None
-        if not isinstance(record, dict) or not {"metrics", "error"} & record.keys():
-            raise CogmapError(f"{path} is damaged; remove it and the same command does this point again")
-        return record
+        return read_record(self._path(point))
 
     def lacks(self, point: Point, *, again: bool) -> bool:
         """Whether a point is still to be done: it is not finished, or has failed and is to be done again."""
@@ -98,9 +94,8 @@ class Ledger:
 
     def write(self, point: Point, record: Record) -> None:
         """Put down what was found, or that it failed."""
-        text = json.dumps({"point": point.described, **record}, indent=1) + "\n"
         with self.replacing(self._path(point)) as fresh:
-            fresh.write_text(text, encoding="utf-8")
+            fresh.write_text(sealed({"point": point.described, **record}), encoding="utf-8")
 
     def lock(self, point: Point) -> FileLock:
         """Make the lock of a point, which whoever works on it holds."""
@@ -116,26 +111,80 @@ class Ledger:
         return self.folder / "points" / f"{point.digest}.json"
 
     def _lay_out(self, plan: Plan, points: Sequence[Point]) -> None:
-        mark, layout = self.folder / MARK, "cogmap sweep 1"
-        digest = hashlib.sha256("".join(sorted(point.digest for point in points)).encode()).hexdigest()
+        mark = self.folder / MARK
+        names = all_of(point.digest for point in points)
         if mark.exists():
-            try:
-                found = json.loads(mark.read_text(encoding="utf-8"))
-                known = found["format"], found["digest"]
-            except (OSError, ValueError, LookupError, TypeError):
-                raise CogmapError(f"{mark} is damaged; choose another folder for the sweep") from None
-            if known != (layout, digest):
+            found = read_mark(mark)
+            if found["points"] != names:
                 raise CogmapError(
                     f"{self.folder} holds another sweep (of {found.get('experiment')!r}); "
                     "choose another folder or remove it first"
                 )
         else:
             described = plan.model_dump(mode="json", by_alias=True, exclude_defaults=True)
-            header = {"format": layout, "digest": digest, **described}
+            header = {"format": FORMAT, "points": names, **described}
             with self.replacing(mark) as fresh:
-                fresh.write_text(json.dumps(header, indent=2) + "\n", encoding="utf-8")
+                fresh.write_text(sealed(header), encoding="utf-8")
         with disk_errors(self.folder):
             self.walks.mkdir(exist_ok=True)
+
+
+def all_of(names: Iterable[str]) -> str:
+    """Give one digest of the names of points, in whatever order."""
+    return hashlib.sha256("".join(sorted(names)).encode()).hexdigest()
+
+
+def sealed(record: Record) -> str:
+    """Give a record as JSON, with its digest."""
+    return json.dumps({**record, "digest": digest(record)}, indent=1) + "\n"
+
+
+def read_mark(path: Path) -> Record:
+    """Read what marks a folder as that of a sweep.
+
+    Raises
+    ------
+    CogmapError
+        For a file that is no longer what was written, or of another layout.
+    """
+    found = _read(path)
+    if isinstance(found, dict) and found.get("format") not in (FORMAT, None):
+        raise CogmapError(
+            f"{path.parent} is of the format {found['format']!r}, not {FORMAT!r}; choose another "
+            "folder, or go on with the program that began it"
+        )
+    if not _is_sealed(found):
+        raise CogmapError(f"{path} is damaged; choose another folder for the sweep")
+    return found
+
+
+def read_record(path: Path) -> Record | None:
+    """Give what the file of a point says, None when there is none.
+
+    Raises
+    ------
+    CogmapError
+        For a file that is no longer what was written, or has the name of another point.
+    """
+    if not path.exists():
+        return None
+    record = _read(path)
+    if not _is_sealed(record) or name_of(record["point"]) != path.stem:
+        raise CogmapError(f"{path} is damaged; remove it and the same command does this point again")
+    return record
+
+
+def _read(path: Path) -> Any:
+    """Read JSON, None where it is none."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, RecursionError):
+        return None
+
+
+def _is_sealed(record: Any) -> TypeGuard[Record]:
+    """Whether what was read is what was written; takes its digest away."""
+    return isinstance(record, dict) and record.pop("digest", None) == digest(record)
 
 
 @contextmanager

@@ -48,7 +48,12 @@ class Point:
     @cached_property
     def digest(self) -> str:
         """Name of all that the outcome depends on."""
-        return hashlib.sha256(json.dumps(self.described, sort_keys=True).encode()).hexdigest()[:32]
+        return name_of(self.described)
+
+
+def name_of(described: Mapping[str, Any]) -> str:
+    """Name a point by all that its outcome depends on, as JSON knows it."""
+    return hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()[:32]
 
 
 def points_of(plan: Plan) -> list[Point]:

@@ -7,8 +7,9 @@ from pathlib import Path
 import pandas as pd
 from tqdm import tqdm
 
+from cogmap.digests import SUMS, sums
 from cogmap.errors import CogmapError, UnlikeArithmeticWarning
-from cogmap.experiments.provenance import write_provenance
+from cogmap.experiments.provenance import PROVENANCE, write_provenance
 from cogmap.experiments.registry import experiments
 from cogmap.inputs import checked_count
 from cogmap.plots.sweep import plot_trend, statistics_of
@@ -132,3 +133,7 @@ def _write(ledger: Ledger, table: pd.DataFrame, plan: Plan) -> None:
         fresh.write_text(plan.to_toml(), encoding="utf-8")
     with disk_errors(ledger.folder):
         write_provenance(ledger.folder, ("sweep", PLAN), None)
+        written = [ledger.folder / name for name in ("table.csv", "table.parquet", PLAN, PROVENANCE)]
+        figures = (ledger.folder / "figures").iterdir()
+        with ledger.replacing(ledger.folder / SUMS) as fresh:
+            fresh.write_text(sums(ledger.folder, [*written, *figures]), encoding="utf-8")

@@ -243,10 +243,10 @@ def test_killed_at_any_moment_nothing_whole_is_done_again(tmp_path: Path) -> Non
 def test_disk_that_fills_up_loses_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, real = tmp_path / "rec.zarr", sharding._write
 
-    def full(file: Path, images: np.ndarray) -> None:
+    def full(file: Path, head: bytes, images: np.ndarray) -> None:
         if "1" in file.parts:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        real(file, images)
+        real(file, head, images)
 
     monkeypatch.setattr(sharding, "_write", full)
     with pytest.raises(ArenaError, match="No space left on device; what is written is kept") as error:

@@ -168,7 +168,7 @@ def test_junk_is_not_a_recording(tmp_path: Path, kind: str) -> None:
 
 def test_other_version(saved: Path) -> None:
     zarr.open_group(saved).attrs["version"] = 2
-    with pytest.raises(ArenaError, match="version 2, not 3"):
+    with pytest.raises(ArenaError, match="version 2, not 4"):
         Recording.open(saved)
 
 
@@ -191,7 +191,7 @@ def test_shard_that_was_cut_short_is_missing(saved: Path) -> None:
 @pytest.mark.parametrize("name", ["odours", "times", "poses"])
 def test_column_that_has_lost_its_values(saved: Path, name: str) -> None:
     shutil.rmtree(saved / name / "c")
-    with pytest.raises(ArenaError, match=f"damaged .a part of {name} is missing"):
+    with pytest.raises(ArenaError, match=f"damaged .{name} does not match its checksum"):
         Recording.open(saved)
 
 
@@ -254,10 +254,11 @@ def test_column_that_is_gone(saved: Path, name: str) -> None:
     ],
 )
 def test_arrays_that_do_not_fit(saved: Path, name: str, values: np.ndarray) -> None:
+    rec = Recording.open(saved)
     shutil.rmtree(saved / name)
-    with zarr.config.set({"array.write_empty_chunks": True}):
-        described = storage._described(name, values.shape, str(values.dtype))
-        zarr.open_group(saved).create_array(name, **described)[:] = values
+    for description in saved.rglob("zarr.json"):
+        description.unlink()
+    storage.describe(saved, rec.views.shape, {**rec._columns, name: values}, rec.attributes)
     with pytest.raises(ArenaError, match=f"damaged: {name} ") as error:
         Recording.open(saved)
     assert "\n" not in str(error.value)
@@ -347,10 +348,7 @@ def test_signals_that_do_not_fit(name: str, values: np.ndarray) -> None:
 @pytest.mark.parametrize("arrays", [[], ["odours", "times"], ["times", "../x"], ["times", 7], 7, None])
 def test_list_of_arrays_that_is_damaged(saved: Path, arrays: object) -> None:
     zarr.open_group(saved).attrs["arrays"] = arrays
-    if arrays == ["odours", "times"]:
-        assert Recording.open(saved).poses is None
-        return
-    with pytest.raises(ArenaError, match="damaged") as error:
+    with pytest.raises(ArenaError, match=r"damaged .its attributes are not what was written") as error:
         Recording.open(saved)
     assert "\n" not in str(error.value)
 
@@ -404,7 +402,7 @@ def test_a_flipped_bit_is_one_sentence(
 def test_many_damaged_views_are_one_sentence(saved: Path, capfd: pytest.CaptureFixture[str]) -> None:
     shard = saved / "views" / "c" / "1" / "0" / "0" / "0"
     content = bytearray(shard.read_bytes())
-    for at in range(0, len(content) - 5000, 20):
+    for at in range(8, len(content) - 5000, 20):
         content[at] ^= 255
     shard.write_bytes(content)
     rec = Recording.open(saved)

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from arena.recordings import sharding
 from arena.recordings.sharding import SHARD, codecs, file, is_complete, shards, write_shards
 
+INDEX = 16 * SHARD + 4
 IMAGES = np.random.default_rng(0).integers(0, 9, (SHARD + 44, 4, 6, 3), dtype=np.uint8)
 FIRST, SECOND = shards(len(IMAGES))
 
@@ -42,10 +43,14 @@ def test_shards_cut_all_views_once(count: int) -> None:
     assert all(len(row) == 256 for row in rows[:-1])
 
 
-def test_bytes_are_those_of_zarr(tmp_path: Path, written: Path) -> None:
+def test_images_are_those_of_zarr_to_the_byte(tmp_path: Path, written: Path) -> None:
+    """The index is as long as there, with other offsets: the shard begins with its number."""
     by_zarr(tmp_path / "zarr")
-    for rows in (FIRST, SECOND):
-        assert file(written, rows).read_bytes() == file(tmp_path / "zarr", rows).read_bytes()
+    for number, rows in enumerate((FIRST, SECOND)):
+        content, zarrs = file(written, rows).read_bytes(), file(tmp_path / "zarr", rows).read_bytes()
+        assert content[:8] == bytes([number, *[0] * 7])
+        assert content[8:-INDEX] == zarrs[:-INDEX]
+        assert len(content) == 8 + len(zarrs)
     assert sorted(path for path in written.rglob("*") if path.is_file() and "zarr" not in path.parts) == [
         file(written, FIRST),
         file(written, SECOND),
@@ -62,10 +67,39 @@ def test_what_is_written_is_whole(written: Path) -> None:
     assert not is_complete(written / "folder", FIRST)
 
 
+def test_zarr_reads_what_is_written(tmp_path: Path) -> None:
+    by_zarr(tmp_path)
+    for rows in (FIRST, SECOND):
+        file(tmp_path, rows).unlink()
+    write_shards(tmp_path, ((rows, IMAGES[rows]) for rows in (FIRST, SECOND)))
+    read = zarr.open_array(tmp_path, mode="r")
+    np.testing.assert_array_equal(read[:], IMAGES)
+    np.testing.assert_array_equal(read[270:272], IMAGES[270:272])
+
+
 def test_shard_that_lacks_an_image_is_not_whole(tmp_path: Path) -> None:
     by_zarr(tmp_path, np.concatenate([IMAGES[:100], 0 * IMAGES[:1], IMAGES[101:]]))
+    for number, rows in enumerate((FIRST, SECOND)):
+        path = file(tmp_path, rows)
+        content = path.read_bytes()
+        index = np.frombuffer(content[-INDEX:-4], "<u8").reshape(SHARD, 2).copy()
+        index[index[:, 1] < 2**63, 0] += 8
+        head, tail = number.to_bytes(8, "little"), index.tobytes()
+        path.write_bytes(head + content[:-INDEX] + tail + sharding._checksum(tail))
     assert not is_complete(tmp_path, FIRST)
     assert is_complete(tmp_path, SECOND)
+
+
+def test_shards_that_have_changed_places_are_not_whole(tmp_path: Path) -> None:
+    images = np.random.default_rng(1).integers(0, 256, (2 * SHARD, 1, 2, 3), dtype=np.uint8)
+    first, second = shards(len(images))
+    write_shards(tmp_path, ((rows, images[rows]) for rows in (first, second)))
+    contents = [file(tmp_path, rows).read_bytes() for rows in (first, second)]
+    assert len(contents[0]) == len(contents[1])
+    for rows, content in zip((second, first), contents, strict=True):
+        file(tmp_path, rows).write_bytes(content)
+    assert not is_complete(tmp_path, first)
+    assert not is_complete(tmp_path, second)
 
 
 @given(data=st.data())
@@ -104,9 +138,9 @@ def test_large_images_give_the_same_bytes_every_time(tmp_path: Path) -> None:
 def test_next_shard_can_be_made_while_one_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made, real = threading.Event(), sharding._write
 
-    def slow(path: Path, images: np.ndarray) -> None:
+    def slow(path: Path, head: bytes, images: np.ndarray) -> None:
         assert made.wait(10)
-        real(path, images)
+        real(path, head, images)
 
     def making() -> Iterator[tuple[slice, np.ndarray]]:
         yield FIRST, IMAGES[FIRST]

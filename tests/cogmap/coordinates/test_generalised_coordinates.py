@@ -8,7 +8,7 @@ from sklearn.base import clone
 from arena.angles import wrap_angle
 from cogmap import GeneralisedCoordinates
 from cogmap.errors import CogmapError
-from cogmap.map.storage import read_state
+from cogmap.map.storage import read_state, write_state
 
 
 @pytest.fixture(scope="module")
@@ -55,9 +55,9 @@ def test_what_is_saved_is_loaded(turning: GeneralisedCoordinates, ring: np.ndarr
     assert loaded.get_params() == turning.get_params()
     weights, *_ = read_state(tmp_path / "ring", kind="coordinates")
     assert "code.weight" in weights
-    (tmp_path / "ring" / "coordinates.json").write_text('{"version": 1, "settings": {}, "learnt": {}}')
+    write_state(tmp_path / "other", {}, {}, {}, kind="coordinates")
     with pytest.raises(CogmapError, match="does not hold whole coordinates"):
-        GeneralisedCoordinates.load(tmp_path / "ring")
+        GeneralisedCoordinates.load(tmp_path / "other")
 
 
 def test_unresolved_loops_leave_no_coordinates(turning: GeneralisedCoordinates, ring: np.ndarray) -> None:

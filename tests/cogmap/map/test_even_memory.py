@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.distance import cdist
 
 from cogmap import CogmapError, CognitiveMap, EvenMemory
+from cogmap.map.storage import write_state
 from cogmap.shape.rips import euclidean, farthest_points
 
 
@@ -109,8 +110,6 @@ def test_bad_input_gets_one_sentence(tmp_path: Path) -> None:
     memory.save(tmp_path / "memory")
     with pytest.raises(CogmapError, match="cannot read a map"):
         CognitiveMap.load(tmp_path / "memory")
-    (tmp_path / "memory" / "memory.json").write_text(
-        '{"version": 1, "settings": {"size": 5}, "learnt": {"seen": 20}}', encoding="utf-8"
-    )
+    write_state(tmp_path / "other", {}, {"size": 5}, {"seen": 20}, kind="memory")
     with pytest.raises(CogmapError, match="does not hold a whole memory"):
-        EvenMemory.load(tmp_path / "memory")
+        EvenMemory.load(tmp_path / "other")

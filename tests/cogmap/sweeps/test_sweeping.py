@@ -16,7 +16,7 @@ from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.registry import Experiment, experiments
 from cogmap.portable import arithmetic
 from cogmap.sweeps import running
-from cogmap.sweeps.ledger import is_full_disk
+from cogmap.sweeps.ledger import is_full_disk, sealed
 from cogmap.sweeps.points import Point
 
 GRID: dict[str, list[Any]] = {"nose.noise": [0.0, 0.5], "map.charts": [15, 40]}
@@ -52,7 +52,8 @@ def test_a_table_with_a_row_for_each_point_and_seed(tmp_path: Path) -> None:
     assert read["smell"].tolist() == table["smell"].tolist()
     assert read.columns.tolist() == table.columns.tolist()
     assert {file.name for file in (tmp_path / "out").iterdir()} == {
-        "about.json", "figures", "plan.toml", "points", "sweep.json", "table.csv", "table.parquet"
+        "SHA256SUMS", "about.json", "figures", "plan.toml", "points", "sweep.json",
+        "table.csv", "table.parquet",
     }  # fmt: skip
     assert (
         json.loads((tmp_path / "out" / "about.json").read_text("utf-8"))["command"]
@@ -116,7 +117,8 @@ def test_points_of_unlike_processors_are_noticed(
     first = min((tmp_path / "out" / "points").iterdir())
     record = json.loads(first.read_text("utf-8"))
     assert record["arithmetic"] == arithmetic()
-    first.write_text(json.dumps(record | {"arithmetic": "deadbeef"}), "utf-8")
+    del record["digest"]
+    first.write_text(sealed(record | {"arithmetic": "deadbeef"}), "utf-8")
     with pytest.warns(UnlikeArithmeticWarning, match=r"done in 2 arithmetics \(.*deadbeef.*cogmap portable"):
         sweep(UNLUCKY, tmp_path / "out", workers=1)
     file = tmp_path / "unlucky.toml"
