@@ -218,7 +218,8 @@ def say_what_is_missing(path: Path, count: int, missing: list[slice], command: s
     if broken:
         return (
             f"{path} is damaged: {present} of its {count} views are there, and {broken[0]} is not whole; the "
-            f"same `{command}` command makes the others again, or open those that are whole with `arena.rescue`"
+            f"same `{command}` command makes the others again, or open those that are whole with "
+            "`arena.rescue`"
         )
     return (
         f"{path} is half-written: {present} of its {count} views are there; "

@@ -69,10 +69,11 @@ class VisualSmell(TransformerMixin, BaseEstimator):
             self._axes = turn_invariant_axes(seen, components)
         found = self._axes.transform(seen)
         self.scale_ = np.sqrt(found.var(axis=0).sum())
-        return np.exp(found / self.scale_)
+        return np.asarray(np.exp(found / self.scale_))
 
     def transform(self, X: Any) -> Float32[np.ndarray, "views odorants"]:
         """Give what other panoramas smell of, all > 0."""
         check_is_fitted(self)
         with one_thread():
-            return np.exp(self._axes.transform(strips(X).turn_invariant) / self.scale_)
+            found = self._axes.transform(strips(X).turn_invariant)
+        return np.asarray(np.exp(found / self.scale_))

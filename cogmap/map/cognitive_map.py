@@ -487,7 +487,7 @@ class CognitiveMap:
             return np.empty((views, 0), np.float32)
         if odorants == 0:
             raise CogmapError(
-                f"this map was begun by sight alone, and now gets odours of shape {np.shape(odours)}; "
+                f"this map was begun by sight alone, and gets odours of shape {np.asarray(odours).shape}; "
                 "give none, or begin another map with both"
             )
         return log_odours(odours, views=views, odorants=odorants)

@@ -48,7 +48,8 @@ def field_of_view(
         )
         for angle in degrees
     }
-    found, drawn = {}, {}
+    found: dict[str, dict[str, Any]] = {}
+    drawn: dict[str, Figure] = {}
     for name, eye in eyes.items():
         trial = Trial.of(conditions, camera=eye)
         found[name] = _measured(trial)
