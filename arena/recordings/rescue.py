@@ -63,7 +63,7 @@ def examine(path: str | Path) -> Examined:
                 whole[rows] = _readable(views, rows)
             if shard.exists() and not whole[rows].all():
                 lost = rows.start + np.flatnonzero(~whole[rows])
-                damage.append(f"{len(lost)} of the views in {shard}, from view {lost[0]} on, cannot be read")
+                damage.append(f"in {shard} {len(lost)} views cannot be read, the first is view {lost[0]}")
     return Examined(views, whole, columns, attributes if sound else {}, unwritten, tuple(damage))
 
 
