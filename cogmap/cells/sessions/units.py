@@ -1,0 +1,116 @@
+"""Units of tracks: what makes metres and radians of them, and what looks like neither."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+
+from arena.angles import wrap_angle
+from cogmap.errors import CogmapError
+from cogmap.inputs import check_choice
+
+METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254, "ft": 0.3048}
+"""In one of each."""
+_WORDS = {
+    "met": "m", "centimet": "cm", "millimet": "mm", "decimet": "dm", "kilomet": "km", "inch": "in",
+    "foot": "ft", "feet": "ft",
+}  # fmt: skip
+NARROWEST, WIDEST = 0.05, 20.0
+"""m; what 98 % of a track span: less is a still animal, more is no box, no maze and no track of a laboratory."""
+TELLING = (
+    "say unit='cm' or 'mm', or metres_per_unit=, the length in m of something seen there over its length in "
+    "the track (a box of 0.8 m that is 400 pixels wide: 0.002)"
+)
+
+
+def metres_per(said: str | None, unit: str | None, metres_per_unit: float | None) -> float:
+    """Give the metres in one unit of a track.
+
+    Parameters
+    ----------
+    said
+        The unit as its source calls it; None where it does not.
+    unit, metres_per_unit
+        What the user says, which goes before; one of them at most.
+
+    Raises
+    ------
+    CogmapError
+        For both, for a unit that is none of length, for a number that cannot be.
+    """
+    if unit is not None and metres_per_unit is not None:
+        raise CogmapError("both unit and metres_per_unit are given; leave one of them out")
+    if metres_per_unit is not None:
+        if isinstance(metres_per_unit, str) or not (np.isfinite(metres_per_unit) and metres_per_unit > 0):
+            raise CogmapError(f"metres_per_unit is {metres_per_unit!r}; give a positive number")
+        return float(metres_per_unit)
+    told = unit if unit is not None else said
+    if told is None:
+        return 1.0
+    short = _short(told)
+    if short not in METRES:
+        whose = "unit is" if unit is not None else "the source says that positions are in"
+        raise CogmapError(f"{whose} {told!r}, which is no length; {TELLING}")
+    return METRES[short]
+
+
+def check_metres(positions: Float[np.ndarray, "samples 2"], *, told: bool) -> None:
+    """Refuse positions that span what no animal's room does, unless the user says that they are metres.
+
+    Raises
+    ------
+    CogmapError
+        With what they span, and how to tell their unit.
+    """
+    known = positions[np.isfinite(positions).all(axis=1)]
+    if told or not len(known):
+        return
+    spans = np.ptp(np.percentile(known, [1, 99], axis=0), axis=0)
+    if spans.max() > WIDEST:
+        raise CogmapError(
+            f"positions span {spans[0]:.4g} × {spans[1]:.4g}, which cannot be metres of a laboratory and "
+            f"looks like centimetres or pixels; {TELLING}; if they are metres, say unit='m'"
+        )
+    if 0 < spans.max() < NARROWEST:
+        raise CogmapError(
+            f"positions span {spans[0]:.2g} × {spans[1]:.2g} m, which no animal walks about in: the unit may "
+            f"be taken twice; {TELLING}; if they are metres, say unit='m'"
+        )
+
+
+def in_radians(
+    headings: Float[np.ndarray, "samples"], said: str | None, unit: str | None
+) -> Float[np.ndarray, "samples"]:
+    """Give headings in rad, in (−π, π].
+
+    Parameters
+    ----------
+    headings
+        NaN where lost.
+    said
+        The unit as its source calls it: what begins with `deg` or `°` is degrees.
+    unit
+        "rad" or "deg", what the user says, which goes before.
+
+    Raises
+    ------
+    CogmapError
+        For another unit, for radians of more than a turn that nobody has said to be radians.
+    """
+    if unit is not None:
+        check_choice("heading_unit", unit, ("rad", "deg"))
+    degrees = unit == "deg" or (unit is None and (said or "").strip().lower().startswith(("deg", "°")))
+    if degrees:
+        return wrap_angle(np.deg2rad(headings))
+    most = float(np.nanmax(np.abs(headings), initial=0.0))
+    if unit is None and most > 2 * np.pi + 1e-3:
+        raise CogmapError(
+            f"headings reach {most:.4g}, more than one turn in radians: they look like degrees; say "
+            "heading_unit='deg', or heading_unit='rad' where they count turns"
+        )
+    return wrap_angle(headings)
+
+
+def _short(unit: str) -> str:
+    word = unit.strip().lower()
+    return next((short for start, short in _WORDS.items() if word.startswith(start)), word)
