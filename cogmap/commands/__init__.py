@@ -12,6 +12,7 @@ app = App(
 )
 _COMMANDS = {
     "arena": "rooms:_arena",
+    "cells": "cells:_cells",
     "demo": "results:_demo",
     "dream": "acting:_dream",
     "experiment": "results:experiment_command",

@@ -14,6 +14,7 @@ from cogmap.cells.rates.bins import bin_edges, heading_centres
 from cogmap.cells.rates.maps import rate_maps
 from cogmap.cells.rates.tuning import tuning_curves
 from cogmap.cells.sessions.session import Session
+from cogmap.cells.sessions.units import positive
 
 FOLDS = 5
 BLOCK = 30.0
@@ -32,10 +33,15 @@ class Decoded(NamedTuple):
     decoded_headings: Float[np.ndarray, "windows"] | None
 
     @property
+    def shuffled_positions(self) -> Float[np.ndarray, "windows 2"]:
+        """What was decoded half a session away, by which chance is judged, m."""
+        return _shuffled(self.decoded_positions)
+
+    @property
     def figures(self) -> dict[str, float]:
         """Errors, and by how much a decoder that knows nothing of now would be wrong: medians and 95 %."""
         away = np.linalg.norm(self.decoded_positions - self.positions, axis=1)
-        chance = np.linalg.norm(_shuffled(self.decoded_positions) - self.positions, axis=1)
+        chance = np.linalg.norm(self.shuffled_positions - self.positions, axis=1)
         figures = {
             "position_median_m": float(np.median(away)),
             "position_p95_m": float(np.percentile(away, 95)),
@@ -80,6 +86,9 @@ def decode_session(
     ----------
     Zhang, Ginzburg, McNaughton & Sejnowski 1998, J. Neurophysiol. 79.
     """
+    window, bin, smoothing = (  # noqa: A001
+        positive(name, value) for name, value in (("window", window), ("bin", bin), ("smoothing", smoothing))
+    )
     size = max(1, round(window / session.seconds))
     windows = _windows(session, size)
     if len(windows) < 2 * FOLDS:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from cogmap.cells.sessions.samples import count_spikes, sample_durations, speeds
 from cogmap.cells.sessions.tables import SPIKES, TRACK
 from cogmap.cells.sessions.tracks import as_track
 from cogmap.cells.sessions.trains import as_trains
-from cogmap.cells.sessions.units import check_metres, in_radians, metres_per
+from cogmap.cells.sessions.units import check_metres, in_radians, metres_per, positive
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_choice
 
@@ -79,7 +79,7 @@ def session(
     metres_per_unit: float | None = None,
     heading_unit: str | None = None,
     slowest: float = 0.0,
-    between: tuple[float, float] | None = None,
+    between: Sequence[float] | None = None,
     **reading: Any,
 ) -> Session:
     """Read an animal's spikes and track as samples: rates in Hz, positions in m, headings in rad.
@@ -165,7 +165,7 @@ def _placed(track: Track, unit: str | None, metres_per_unit: float | None, headi
 
 
 def sampled(
-    recorded: Recorded, *, slowest: float = 0.0, between: tuple[float, float] | None = None
+    recorded: Recorded, *, slowest: float = 0.0, between: Sequence[float] | None = None
 ) -> Session:
     """Count spikes in samples, and leave out samples that tell nothing; `recorded` is in metres and radians.
 
@@ -174,8 +174,7 @@ def sampled(
     CogmapError
         For a speed that cannot be, and when fewer than two samples are left.
     """
-    if not (np.isfinite(slowest) and slowest >= 0):
-        raise CogmapError(f"slowest is {slowest!r} m/s; give a speed of 0 or more")
+    slowest = positive("slowest", slowest, or_zero=True)
     track = recorded.track
     lasting = sample_durations(track.times)
     kept, left_out = _kept(recorded, slowest, between)
@@ -209,12 +208,12 @@ def sampled(
 
 
 def _kept(
-    recorded: Recorded, slowest: float, between: tuple[float, float] | None
+    recorded: Recorded, slowest: float, between: Sequence[float] | None
 ) -> tuple[Bool[np.ndarray, "samples"], dict[str, int]]:
     """Say which samples stay, and count the others by the first reason why not."""
     track = recorded.track
     always = np.ones(len(track.times), dtype=bool)
-    asked = always if between is None else within(track.times, np.array([between], dtype=float))
+    asked = always if between is None else within(track.times, _epoch(between))
     faced = always if track.headings is None else np.isfinite(track.headings)
     heard = always if recorded.observed is None else within(track.times, recorded.observed)
     moving = speeds(track.times, track.positions) >= slowest if slowest else always
@@ -229,3 +228,10 @@ def _kept(
         left_out[why] = int(np.count_nonzero(kept & ~fine))
         kept = kept & fine
     return kept, left_out
+
+
+def _epoch(between: Sequence[float]) -> Float[np.ndarray, "1 2"]:
+    """Read from when to when."""
+    if isinstance(between, str) or np.shape(between) != (2,) or not between[0] < between[1]:
+        raise CogmapError(f"between is {between!r}; give two times in s, the earlier first")
+    return np.array([between], dtype=float)

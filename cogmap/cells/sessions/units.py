@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from numbers import Real
+
 import numpy as np
 from jaxtyping import Float
 
@@ -23,7 +25,21 @@ TELLING = (
 )
 
 
-def metres_per(said: str | None, unit: str | None, metres_per_unit: float | None) -> float:
+def positive(name: str, value: object, *, or_zero: bool = False) -> float:
+    """Return a finite number above 0, or say what is wrong with it.
+
+    Raises
+    ------
+    CogmapError
+        For anything else.
+    """
+    number = isinstance(value, Real) and not isinstance(value, bool) and np.isfinite(float(value))
+    if not (isinstance(value, Real) and number and (value > 0 or (or_zero and value == 0))):
+        raise CogmapError(f"{name} is {value!r}; give a {'number of 0 or more' if or_zero else 'positive number'}")
+    return float(value)
+
+
+def metres_per(said: str | None, unit: str | None, metres_per_unit: object) -> float:
     """Give the metres in one unit of a track.
 
     Parameters
@@ -41,9 +57,7 @@ def metres_per(said: str | None, unit: str | None, metres_per_unit: float | None
     if unit is not None and metres_per_unit is not None:
         raise CogmapError("both unit and metres_per_unit are given; leave one of them out")
     if metres_per_unit is not None:
-        if isinstance(metres_per_unit, str) or not (np.isfinite(metres_per_unit) and metres_per_unit > 0):
-            raise CogmapError(f"metres_per_unit is {metres_per_unit!r}; give a positive number")
-        return float(metres_per_unit)
+        return positive("metres_per_unit", metres_per_unit)
     told = unit if unit is not None else said
     if told is None:
         return 1.0
