@@ -10,6 +10,7 @@ from cyclopts import Parameter
 from arena import Recording
 from cogmap.atomic import result_folder
 from cogmap.cells import MeasuredSession, Session, session
+from cogmap.cells.sessions.units import positive
 from cogmap.commands.common import Json, Seed, Told, tell
 from cogmap.errors import CogmapError
 from cogmap.evaluation.map_session import map_session
@@ -62,7 +63,7 @@ def _cells(
         raise CogmapError("there is no session; give an NWB file, a folder of tables, or a recording and --map")
     checked_count("shuffles", shuffles)
     options = {name: _number(value) for name, value in parse(told or []).items()}
-    measures = {name: options.pop(name) for name in _OF_MEASURES if name in options}
+    measures = {name: positive(name, options.pop(name)) for name in _OF_MEASURES if name in options}
     window = {"window": measures.pop("window")} if "window" in measures else {}
     grown = None if cmap is None else CognitiveMap.load(cmap)
     read = {_name(path, sources): _read(path, grown, track, options) for path in sources}

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from arena import Recording
-from cogmap.cells.sessions.recorded import Recorded, Track
+from cogmap.cells.sessions.recorded import Recorded, track_of
 from cogmap.cells.sessions.session import Session, sampled
 from cogmap.evaluation.populations import perceive
 from cogmap.map.cognitive_map import CognitiveMap
@@ -17,8 +18,8 @@ def map_session(
     recording: Recording,
     cmap: CognitiveMap,
     *,
-    slowest: float = 0.0,
-    between: Sequence[float] | None = None,
+    slowest: object = 0.0,
+    between: Sequence[Any] | None = None,
 ) -> Session:
     """Let the cells of a map look at the views of a recording, and put their rates beside where it was.
 
@@ -43,7 +44,7 @@ def map_session(
     rates = {name: np.nan_to_num(getattr(seen, name)).astype(float) for name in ("place", "heading")}
     kinds = [name for name, fired in rates.items() for _ in range(fired.shape[1])]
     recorded = Recorded(
-        Track(recording.times, poses[:, :2], poses[:, 2]),
+        track_of(recording.times, poses[:, :2], poses[:, 2]),
         [str(index) for index in range(len(kinds))],
         kinds,
         rates=np.concatenate(list(rates.values()), axis=1),

@@ -14,6 +14,7 @@ from jaxtyping import Float
 from cogmap.cells.sessions.pynapple_objects import CELL_TYPE
 from cogmap.cells.sessions.recorded import ONE_POPULATION, Recorded, Series, Track
 from cogmap.cells.sessions.tracks import of_series
+from cogmap.cells.sessions.units import scaled
 from cogmap.errors import CogmapError
 
 ENDINGS = (".nwb", ".h5", ".hdf5")
@@ -156,7 +157,7 @@ def _heading(file: Any, name: str | None) -> Any:
 
 
 def _series(series: Any) -> Series:
-    values = np.asarray(series.data[:], dtype=float) * series.conversion + series.offset
+    values = scaled(np.asarray(series.data[:], dtype=float), series.conversion) + series.offset
     return Series(np.asarray(series.get_timestamps()[:], dtype=float), values, series.unit)
 
 

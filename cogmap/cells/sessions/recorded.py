@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from jaxtyping import Float
+from numpy.typing import ArrayLike
 
 from cogmap.errors import CogmapError
 
@@ -38,29 +39,6 @@ class Track:
     heading_unit: str | None = None
     notes: Mapping[str, Any] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        if self.times.ndim != 1 or len(self.times) < 2:
-            raise CogmapError(
-                f"the times of the track have shape {self.times.shape}; give two samples or more"
-            )
-        if self.positions.shape != (len(self.times), 2):
-            raise CogmapError(
-                f"the positions of the track have shape {self.positions.shape} for {len(self.times)} times; "
-                "give x and y for each"
-            )
-        if self.headings is not None and self.headings.shape != self.times.shape:
-            raise CogmapError(
-                f"the headings of the track have shape {self.headings.shape} for {len(self.times)} times; "
-                "give one for each"
-            )
-        late = np.flatnonzero(~(np.diff(self.times) > 0))
-        if not np.isfinite(self.times).all() or len(late):
-            at = late[0] if len(late) else 0
-            raise CogmapError(
-                f"the times of the track do not increase at sample {at + 1}, where {self.times[at + 1]:g} s "
-                f"follows {self.times[at]:g} s; sort the samples and keep one a time"
-            )
-
 
 @dataclass(frozen=True, eq=False)
 class Recorded:
@@ -76,3 +54,41 @@ class Recorded:
     observed: Float[np.ndarray, "epochs 2"] | None = None
     """From when to when all cells were listened to, s; None for always."""
     notes: Mapping[str, Any] = field(default_factory=dict)
+
+
+def track_of(
+    times: ArrayLike,
+    positions: ArrayLike,
+    headings: ArrayLike | None = None,
+    *,
+    unit: str | None = None,
+    heading_unit: str | None = None,
+) -> Track:
+    """Make a track of arrays, or say what is wrong with them.
+
+    Raises
+    ------
+    CogmapError
+        For shapes that do not fit each other, and times that do not increase.
+    """
+    when, places = np.asarray(times, dtype=float), np.asarray(positions, dtype=float)
+    turns = None if headings is None else np.asarray(headings, dtype=float)
+    if when.ndim != 1 or len(when) < 2:
+        raise CogmapError(f"the times of the track have shape {when.shape}; give two samples or more")
+    if places.shape != (len(when), 2):
+        raise CogmapError(
+            f"the positions of the track have shape {places.shape} for {len(when)} times; "
+            "give x and y for each"
+        )
+    if turns is not None and turns.shape != when.shape:
+        raise CogmapError(
+            f"the headings of the track have shape {turns.shape} for {len(when)} times; give one for each"
+        )
+    late = np.flatnonzero(~(np.diff(when) > 0))
+    if len(late):
+        before, after = when[late[0] : late[0] + 2]
+        raise CogmapError(
+            f"the times of the track do not increase at sample {late[0] + 1}, where {after:g} s follows "
+            f"{before:g} s; sort the samples and keep one a time"
+        )
+    return Track(when, places, turns, unit, heading_unit)

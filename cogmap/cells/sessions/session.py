@@ -16,7 +16,7 @@ from cogmap.cells.sessions.samples import count_spikes, sample_durations, speeds
 from cogmap.cells.sessions.tables import SPIKES, TRACK
 from cogmap.cells.sessions.tracks import as_track
 from cogmap.cells.sessions.trains import as_trains
-from cogmap.cells.sessions.units import check_metres, in_radians, metres_per, positive
+from cogmap.cells.sessions.units import check_metres, in_radians, metres_per, positive, scaled
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_choice
 
@@ -76,10 +76,10 @@ def session(
     heading: str | None = None,
     activity: str | None = None,
     unit: str | None = None,
-    metres_per_unit: float | None = None,
+    metres_per_unit: object = None,
     heading_unit: str | None = None,
-    slowest: float = 0.0,
-    between: Sequence[float] | None = None,
+    slowest: object = 0.0,
+    between: Sequence[Any] | None = None,
     **reading: Any,
 ) -> Session:
     """Read an animal's spikes and track as samples: rates in Hz, positions in m, headings in rad.
@@ -149,10 +149,10 @@ def _beside(source: Any, track: Any, heading_unit: str | None, reading: Mapping[
     return Recorded(where, list(trains), kinds, list(trains.values()))
 
 
-def _placed(track: Track, unit: str | None, metres_per_unit: float | None, heading_unit: str | None) -> Track:
+def _placed(track: Track, unit: str | None, metres_per_unit: object, heading_unit: str | None) -> Track:
     """Bring a track to metres and radians."""
     scale = metres_per(track.unit, unit, metres_per_unit)
-    positions = track.positions * scale
+    positions = scaled(track.positions, scale)
     check_metres(positions, told=unit == "m")
     headings = track.headings
     if headings is not None:
@@ -165,7 +165,7 @@ def _placed(track: Track, unit: str | None, metres_per_unit: float | None, headi
 
 
 def sampled(
-    recorded: Recorded, *, slowest: float = 0.0, between: Sequence[float] | None = None
+    recorded: Recorded, *, slowest: object = 0.0, between: Sequence[Any] | None = None
 ) -> Session:
     """Count spikes in samples, and leave out samples that tell nothing; `recorded` is in metres and radians.
 
@@ -174,10 +174,10 @@ def sampled(
     CogmapError
         For a speed that cannot be, and when fewer than two samples are left.
     """
-    slowest = positive("slowest", slowest, or_zero=True)
+    least = positive("slowest", slowest, or_zero=True)
     track = recorded.track
     lasting = sample_durations(track.times)
-    kept, left_out = _kept(recorded, slowest, between)
+    kept, left_out = _kept(recorded, least, between)
     told = ", ".join(f"{count} {why}" for why, count in left_out.items() if count)
     if kept.sum() < 2:
         raise CogmapError(f"{kept.sum()} of {len(kept)} samples are left ({told}); leave out fewer of them")
@@ -208,7 +208,7 @@ def sampled(
 
 
 def _kept(
-    recorded: Recorded, slowest: float, between: Sequence[float] | None
+    recorded: Recorded, slowest: float, between: Sequence[Any] | None
 ) -> tuple[Bool[np.ndarray, "samples"], dict[str, int]]:
     """Say which samples stay, and count the others by the first reason why not."""
     track = recorded.track
@@ -230,7 +230,7 @@ def _kept(
     return kept, left_out
 
 
-def _epoch(between: Sequence[float]) -> Float[np.ndarray, "1 2"]:
+def _epoch(between: Sequence[Any]) -> Float[np.ndarray, "1 2"]:
     """Read from when to when."""
     if isinstance(between, str) or np.shape(between) != (2,) or not between[0] < between[1]:
         raise CogmapError(f"between is {between!r}; give two times in s, the earlier first")

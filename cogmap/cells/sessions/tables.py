@@ -10,7 +10,7 @@ import pandas as pd
 from jaxtyping import Float
 
 from arena.motions.paths import read_path
-from cogmap.cells.sessions.recorded import Track
+from cogmap.cells.sessions.recorded import Track, track_of
 from cogmap.errors import CogmapError
 
 SPIKES, TRACK = "spikes.csv", "track.csv"
@@ -30,7 +30,7 @@ def read_track_file(path: Path, **options: Any) -> Track:
     if options:
         raise CogmapError(f"unknown option {next(iter(options))!r} for a track")
     found = read_path(path)
-    return Track(found.times, found.positions, found.headings)
+    return track_of(found.times, found.positions, found.headings)
 
 
 def read_spikes(path: Path) -> dict[str, Float[np.ndarray, "_"]]:

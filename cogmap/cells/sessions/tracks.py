@@ -10,7 +10,7 @@ import pandas as pd
 
 from cogmap.cells.sessions.neo_objects import is_neo_signal, neo_series
 from cogmap.cells.sessions.pynapple_objects import is_pynapple, pynapple_series
-from cogmap.cells.sessions.recorded import Series, Track
+from cogmap.cells.sessions.recorded import Series, Track, track_of
 from cogmap.cells.sessions.samples import headings_at
 from cogmap.cells.sessions.tables import read_track_file
 from cogmap.cells.sessions.units import in_radians
@@ -55,12 +55,12 @@ def as_track(track: Any, *, heading_unit: str | None = None, **reading: Any) -> 
     if isinstance(track, tuple | list) and len(track) in {2, 3} and not hasattr(track, "positions"):
         if _is_series(track[0]):
             return of_series(_series(track[0]), _series(track[1]), heading_unit)
-        return _arrays(*track)
+        return track_of(*track)
     poses = getattr(track, "poses", None)
     if poses is not None:
-        return _arrays(track.times, np.asarray(poses)[:, :2], np.asarray(poses)[:, 2])
+        return track_of(track.times, np.asarray(poses)[:, :2], np.asarray(poses)[:, 2])
     if hasattr(track, "times") and hasattr(track, "positions"):
-        return _arrays(track.times, track.positions, getattr(track, "headings", None))
+        return track_of(track.times, track.positions, getattr(track, "headings", None))
     raise CogmapError(f"a track cannot be made of {type(track).__name__}; {ASKED}")
 
 
@@ -79,19 +79,13 @@ def of_series(positions: Series, headings: Series | None, heading_unit: str | No
     if places.shape[1] != 2:
         raise CogmapError(f"positions have {places.shape[1]} columns; give x and y alone")
     if headings is None:
-        return Track(positions.times, places, unit=positions.unit)
+        return track_of(positions.times, places, unit=positions.unit)
     turns = headings.values.reshape(len(headings.times), -1)
     if turns.shape[1] != 1:
         raise CogmapError(f"headings have {turns.shape[1]} columns; give one angle")
     radians = in_radians(turns[:, 0], headings.unit, heading_unit)
     ahead = headings_at(Series(headings.times, radians, None), positions.times)
-    return Track(positions.times, places, ahead, unit=positions.unit, heading_unit="rad")
-
-
-def _arrays(times: Any, positions: Any, headings: Any = None) -> Track:
-    places = np.asarray(positions, dtype=float)
-    turns = None if headings is None else np.asarray(headings, dtype=float)
-    return Track(np.asarray(times, dtype=float), places, turns)
+    return track_of(positions.times, places, ahead, unit=positions.unit, heading_unit="rad")
 
 
 def _table(table: pd.DataFrame) -> Track:
@@ -103,7 +97,7 @@ def _table(table: pd.DataFrame) -> Track:
         raise CogmapError("the track has both heading and heading_deg; leave one of them out")
     times, *axes = (table[name].to_numpy(dtype=float) for name in ("t", "x", "y", *names))
     unit = "deg" if names == ["heading_deg"] else None
-    return Track(times, np.stack(axes[:2], axis=1), axes[2] if names else None, heading_unit=unit)
+    return track_of(times, np.stack(axes[:2], axis=1), axes[2] if names else None, heading_unit=unit)
 
 
 def _is_series(value: Any) -> bool:

@@ -19,6 +19,8 @@ _WORDS = {
 }  # fmt: skip
 NARROWEST, WIDEST = 0.05, 20.0
 """m; what 98 % of a track span: less is a still animal, more is no box, no maze and no track of a laboratory."""
+DIGITS = 9
+"""A nanometre."""
 TELLING = (
     "say unit='cm' or 'mm', or metres_per_unit=, the length in m of something seen there over its length in "
     "the track (a box of 0.8 m that is 400 pixels wide: 0.002)"
@@ -66,6 +68,14 @@ def metres_per(said: str | None, unit: str | None, metres_per_unit: object) -> f
         whose = "unit is" if unit is not None else "the source says that positions are in"
         raise CogmapError(f"{whose} {told!r}, which is no length; {TELLING}")
     return METRES[short]
+
+
+def scaled(values: Float[np.ndarray, "samples *axes"], factor: float) -> Float[np.ndarray, "samples *axes"]:
+    """Bring values to another unit, so that 70 cm are the 0.7 m that somebody else has written.
+
+    Trackers give whole centimetres or pixels, which lie on the edges of bins; 70 · 0.01 is not 0.7.
+    """
+    return values if factor == 1 else np.round(values * factor, DIGITS)
 
 
 def check_metres(positions: Float[np.ndarray, "samples 2"], *, told: bool) -> None:
