@@ -1,6 +1,7 @@
 """The command about cells: an animal's or a map's, measured alike."""
 
 import inspect
+import sys
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
@@ -70,6 +71,8 @@ def _cells(
     measured = {
         name: MeasuredSession(found, shuffles=shuffles, seed=seed, **measures) for name, found in read.items()
     }
+    if grown is not None and not grown.trusted_:
+        sys.stderr.write(f"cogmap: this map is not to be trusted: {grown.reason_}\n")
     with result_folder(out) as folder:
         result = compare_sessions(measured, **window)
         result.write(folder)

@@ -10,7 +10,7 @@ import numpy as np
 from arena import Recording
 from cogmap.cells.sessions.recorded import Recorded, track_of
 from cogmap.cells.sessions.session import Session, sampled
-from cogmap.evaluation.populations import perceive
+from cogmap.evaluation.populations import perceive, trust_report
 from cogmap.map.cognitive_map import CognitiveMap
 
 
@@ -24,6 +24,7 @@ def map_session(
     """Let the cells of a map look at the views of a recording, and put their rates beside where it was.
 
     The populations are `place` and `heading`; a cell without a compass is silent. Only rates are known.
+    The notes say whether the map is to be trusted, and why not.
 
     Parameters
     ----------
@@ -48,6 +49,6 @@ def map_session(
         [str(index) for index in range(len(kinds))],
         kinds,
         rates=np.concatenate(list(rates.values()), axis=1),
-        notes={"activity": "rates"},
+        notes={"activity": "rates", **trust_report(cmap)},
     )
     return sampled(recorded, slowest=slowest, between=between)
