@@ -61,7 +61,9 @@ def _cells(
         By which chance is judged.
     """
     if not sources:
-        raise CogmapError("there is no session; give an NWB file, a folder of tables, or a recording and --map")
+        raise CogmapError(
+            "there is no session; give an NWB file, a folder of tables, or a recording and --map"
+        )
     checked_count("shuffles", shuffles)
     options = {name: _number(value) for name, value in parse(told or []).items()}
     measures = {name: positive(name, options.pop(name)) for name in _OF_MEASURES if name in options}
@@ -88,7 +90,9 @@ def _read(path: Path, cmap: CognitiveMap | None, track: Path | None, options: di
     """Read one session, of an animal or of a map."""
     if (path / "zarr.json").exists():
         if cmap is None:
-            raise CogmapError(f"{path} is a recording, which has no cells; give the map whose cells look, --map")
+            raise CogmapError(
+                f"{path} is a recording, which has no cells; give the map whose cells look, --map"
+            )
         both = {name: value for name, value in options.items() if name in _OF_BOTH}
         return map_session(Recording.open(path), cmap, **both)
     known = [*inspect.signature(session).parameters][2:-1]

@@ -42,8 +42,8 @@ def compare_sessions(measured: Mapping[str, MeasuredSession], *, window: float =
     -------
     Result
         Metrics by session: how it was read, errors of decoding, and, by population, how many cells pass as
-        place cells and as head-direction cells, how many are tuned with p < .01 by shuffling, and medians. The
-        table `cells` has a row a cell; `by_population` has the metrics of populations in columns.
+        place cells and as head-direction cells, how many are tuned with p < .01 by shuffling, and medians.
+        The table `cells` has a row a cell; `by_population` has the metrics of populations in columns.
 
     Raises
     ------
@@ -116,7 +116,10 @@ class _Population(NamedTuple):
         return {
             "cells": float(len(self.table)),
             **{f"{name}_cells_passing": float(self.table[f"{name}_passing"].mean()) for name in judged},
-            **{f"{name}_cells_tuned": float((self.table[p] < SIGNIFICANT).mean()) for name, p in judged.items()},
+            **{
+                f"{name}_cells_tuned": float((self.table[p] < SIGNIFICANT).mean())
+                for name, p in judged.items()
+            },
             **{f"median_{name}": float(value) for name, value in medians.items()},
         }
 

@@ -6,7 +6,7 @@ import numpy as np
 
 
 class Rat(NamedTuple):
-    """A walk in a box of 1 m, ten minutes at 20 Hz, and Poisson cells: a grid of 16 place cells, 6 of heading."""
+    """Ten minutes in a box of 1 m at 20 Hz; Poisson cells: a grid of 16 place cells, 6 of heading."""
 
     times: np.ndarray
     positions: np.ndarray

@@ -12,11 +12,11 @@ def join_statistics(place: pd.DataFrame, heading: pd.DataFrame | None) -> pd.Dat
     """Join `place_statistics` and `heading_statistics` of the same cells.
 
     The two columns `passing` are `place_passing` and `heading_passing`, and the spatial information of the
-    second is `spatial_information_beyond_heading`. Without headings its columns are NaN, and no cell passes as
-    a head-direction cell.
+    second is `spatial_information_beyond_heading`. Without headings its columns are NaN, and no cell passes
+    as a head-direction cell.
     """
     if heading is None:
-        unknown = {name: np.nan for name in (*OF_HEADING, "spatial_information")}
+        unknown = dict.fromkeys((*OF_HEADING, "spatial_information"), np.nan)
         heading = pd.DataFrame({**unknown, "passing": False}, index=place.index)
     mine = heading[list(OF_HEADING)].assign(spatial_information_beyond_heading=heading["spatial_information"])
     table = place.drop(columns="passing").join(mine)

@@ -28,7 +28,9 @@ def map_stability(
     if len(inside) < 2:
         return np.full(rates.shape[1], np.nan)
     first, second = (
-        rate_maps(rates[half], positions[half], edges.side, smoothing, edges=edges).rates.reshape(rates.shape[1], -1)
+        rate_maps(rates[half], positions[half], edges.side, smoothing, edges=edges).rates.reshape(
+            rates.shape[1], -1
+        )
         for half in np.array_split(inside, 2)
     )
     return correlations(first, second)

@@ -60,13 +60,17 @@ class Decoded(NamedTuple):
 
 
 def decode_session(
-    session: Session, *, window: float = 0.5, bin: float = 0.1, smoothing: float = 0.15  # noqa: A002
+    session: Session,
+    *,
+    window: float = 0.5,
+    bin: float = 0.1,  # noqa: A002
+    smoothing: float = 0.15,
 ) -> Decoded | None:
-    """Decode position and heading from the spikes of all cells, by Bayes' rule with independent Poisson cells.
+    """Decode position and heading from the spikes of all cells, by Bayes' rule for independent Poisson cells.
 
     The session is cut into blocks of 30 s (a tenth of it where it is short), dealt out to five folds in turn;
-    each fold is decoded from the maps and curves of the other four. Where only rates are known, they stand for
-    the spikes that are expected. A place is as likely as another before a cell is heard.
+    each fold is decoded from the maps and curves of the other four. Where only rates are known, they stand
+    for the spikes that are expected. A place is as likely as another before a cell is heard.
 
     Parameters
     ----------

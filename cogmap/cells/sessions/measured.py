@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -97,7 +98,7 @@ class MeasuredSession:
         table.insert(0, "population", list(self.session.populations))
         return table.reset_index(drop=True)
 
-    def _chance(self, statistic: object) -> Float[np.ndarray, "cells"]:
+    def _chance(self, statistic: Callable[[np.ndarray], np.ndarray]) -> Float[np.ndarray, "cells"]:
         least = max(1, min(round(SHIFT / self.session.seconds), len(self.session) // 4))
         rng = np.random.default_rng(self.seed)
         return shuffle_test(
@@ -114,4 +115,4 @@ class MeasuredSession:
         headings = self.session.headings
         if headings is None:
             return np.full(rates.shape[1], np.nan)
-        return np.abs(mean_vectors(tuning_curves(rates, headings)))
+        return np.asarray(np.abs(mean_vectors(tuning_curves(rates, headings))))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -124,7 +124,7 @@ def _chosen(found: list[Any], name: str | None, what: str) -> Any:
 def _track(file: Any, position: str | None, heading: str | None, heading_unit: str | None) -> Track:
     """Read where the animal was and faced, and note by which series."""
     where, ahead = _position(file, position), _heading(file, heading)
-    track = of_series(_series(where), None if ahead is None else _series(ahead), heading_unit)
+    track = of_series(_series(where), None if ahead is None else _series(ahead), heading_unit=heading_unit)
     notes = {"position": _name(where), **({} if ahead is None else {"heading": _name(ahead)})}
     return replace(track, notes=notes)
 
@@ -138,16 +138,19 @@ def _position(file: Any, name: str | None) -> Any:
     found = _chosen(series, name, "position")
     if found is None:
         known = ", ".join(map(_name, _of_kind(file, "SpatialSeries"))) or "no spatial series at all"
+        told = "" if name is None else f" {name!r}"
         raise CogmapError(
-            f"the file has no position{'' if name is None else f' {name!r}'}; it has {known}: say which is the "
-            "position, as position='NAME', or give the track= from elsewhere"
+            f"the file has no position{told}; it has {known}: say which it is, as position='NAME', or give the "
+            "track= from elsewhere"
         )
     return found
 
 
 def _heading(file: Any, name: str | None) -> Any:
     if name is None:
-        compass = [s for s in _of_kind(file, "SpatialSeries") if type(s.parent).__name__ == "CompassDirection"]
+        compass = [
+            s for s in _of_kind(file, "SpatialSeries") if type(s.parent).__name__ == "CompassDirection"
+        ]
         return _chosen(compass, None, "heading")
     found = _chosen(_of_kind(file, "TimeSeries"), name, "heading")
     if found is None:
@@ -165,7 +168,9 @@ def _units(file: Any, track: Track) -> Recorded:
     units = file.units
     if units is None or not len(units) or "spike_times" not in units.colnames:
         raise CogmapError("the file has no units with spike times; give one in which spikes are sorted")
-    trains = [np.sort(np.asarray(units.get_unit_spike_times(index), dtype=float)) for index in range(len(units))]
+    trains = [
+        np.sort(np.asarray(units.get_unit_spike_times(index), dtype=float)) for index in range(len(units))
+    ]
     names = next((units[name][:] for name in ("unit_name", "label") if name in units.colnames), units.id[:])
     if len({*map(str, names)}) < len(trains):
         names = units.id[:]
@@ -204,10 +209,19 @@ def _rates(file: Any, track: Track) -> Recorded:
         raise CogmapError(
             f"the file has no rates in hertz at the times of the position; it has {told}: read its spikes"
         )
+    order = _populations(file.units)
+    fit.sort(key=lambda series: order.index(_kind(series)) if _kind(series) in order else len(order))
     rates = np.concatenate([np.asarray(series.data[:], dtype=float) for series in fit], axis=1)
-    kinds = [str(series.name).removesuffix("_rates") for series in fit for _ in range(series.data.shape[1])]
-    return Recorded(track, _numbers(len(kinds)), kinds, rates=rates)
+    kinds = [_kind(series) for series in fit for _ in range(series.data.shape[1])]
+    return Recorded(track, [str(index) for index in range(len(kinds))], kinds, rates=rates)
 
 
-def _numbers(count: int) -> Sequence[str]:
-    return [str(index) for index in range(count)]
+def _kind(series: Any) -> str:
+    """Name the population whose rates a series has."""
+    return str(series.name).removesuffix("_rates")
+
+
+def _populations(units: Any) -> list[str]:
+    """Give the populations of the units in their order, by which those of rates are ordered too."""
+    sorted_into = units is not None and CELL_TYPE in units.colnames
+    return list(dict.fromkeys(map(str, units[CELL_TYPE][:]))) if sorted_into else []

@@ -21,7 +21,7 @@ class Series(NamedTuple):
 
     times: Float[np.ndarray, "samples"]
     """s."""
-    values: Float[np.ndarray, "samples *axes"]
+    data: Float[np.ndarray, "samples *axes"]
     unit: str | None
     """As it is called there; None where it is not."""
 

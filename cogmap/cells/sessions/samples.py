@@ -21,7 +21,7 @@ def sample_durations(times: Float[np.ndarray, "samples"]) -> Float[np.ndarray, "
     """
     steps = np.diff(times)
     usual = float(np.median(steps))
-    return np.minimum(np.append(steps, usual), 2 * usual)
+    return np.asarray(np.minimum(np.append(steps, usual), 2 * usual))
 
 
 def speeds(
@@ -40,7 +40,7 @@ def speeds(
     )
     lapse = ends[1] - ends[0]
     gone = np.hypot(*(after - before))
-    return np.divide(gone, lapse, out=np.zeros_like(gone), where=lapse > 0)
+    return np.asarray(np.divide(gone, lapse, out=np.zeros_like(gone), where=lapse > 0))
 
 
 def count_spikes(
@@ -65,8 +65,8 @@ def headings_at(series: Series, times: Float[np.ndarray, "samples"]) -> Float[np
     that is lost.
     """
     if np.array_equal(series.times, times):
-        return np.asarray(series.values)
-    directions = _between(series.times, np.exp(1j * series.values), times)
+        return np.asarray(series.data)
+    directions = _between(series.times, np.exp(1j * series.data), times)
     after = np.clip(np.searchsorted(series.times, times), 1, len(series.times) - 1)
     gap = np.diff(series.times)[after - 1] > 2 * np.median(np.diff(series.times))
     beyond = (times < series.times[0]) | (times > series.times[-1])
@@ -74,10 +74,11 @@ def headings_at(series: Series, times: Float[np.ndarray, "samples"]) -> Float[np
     return np.where(beyond | (gap & ~on_one), np.nan, np.angle(directions))
 
 
-def within(times: Float[np.ndarray, "samples"], epochs: Float[np.ndarray, "epochs 2"]) -> Bool[np.ndarray, "samples"]:
+def within(
+    times: Float[np.ndarray, "samples"], epochs: Float[np.ndarray, "epochs 2"]
+) -> Bool[np.ndarray, "samples"]:
     """Say which times lie in one of some epochs."""
-    inside: np.ndarray = ((epochs[:, :1] <= times) & (times <= epochs[:, 1:])).any(axis=0)
-    return inside
+    return np.asarray(((epochs[:, :1] <= times) & (times <= epochs[:, 1:])).any(axis=0))
 
 
 def _between(

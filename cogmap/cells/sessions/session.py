@@ -103,8 +103,8 @@ def session(
     activity
         "spikes" or "rates" of an NWB file; its spikes when None and there are any.
     unit
-        Of the positions: "m", "cm", "mm", "in", ...; what the source says when None, else metres. What is said
-        here goes before what the source says.
+        Of the positions: "m", "cm", "mm", "in", ...; what the source says when None, else metres. What is
+        said here goes before what the source says.
     metres_per_unit
         In place of a unit, as for pixels.
     heading_unit
@@ -164,9 +164,7 @@ def _placed(track: Track, unit: str | None, metres_per_unit: object, heading_uni
     )
 
 
-def sampled(
-    recorded: Recorded, *, slowest: object = 0.0, between: Sequence[Any] | None = None
-) -> Session:
+def sampled(recorded: Recorded, *, slowest: object = 0.0, between: Sequence[Any] | None = None) -> Session:
     """Count spikes in samples, and leave out samples that tell nothing; `recorded` is in metres and radians.
 
     Raises

@@ -60,8 +60,8 @@ def sort_spikes(table: pd.DataFrame, whose: str = "the table of spikes") -> dict
     """
     if not {"cell", "t"} <= set(table.columns):
         raise CogmapError(
-            f"{whose} has columns {', '.join(map(str, table.columns))}; it must have cell and t (s), one row a "
-            "spike"
+            f"{whose} has columns {', '.join(map(str, table.columns))}; it must have cell and t (s), one row "
+            "a spike"
         )
     times = pd.to_numeric(table["t"], errors="coerce").to_numpy(dtype=float)
     wrong = np.flatnonzero(~np.isfinite(times) | table["cell"].isna().to_numpy())

@@ -17,8 +17,8 @@ from cogmap.cells.sessions.units import in_radians
 from cogmap.errors import CogmapError
 
 ASKED = (
-    "give a file, a table with t, x, y and, optionally, heading or heading_deg, a pair of times and positions "
-    "or three with headings, or series of pynapple or neo"
+    "give a file, a table with t, x, y and, optionally, heading or heading_deg, a pair of times and "
+    "positions or three with headings, or series of pynapple or neo"
 )
 
 
@@ -50,21 +50,18 @@ def as_track(track: Any, *, heading_unit: str | None = None, **reading: Any) -> 
         raise CogmapError(f"the session has no track, so nobody knows where the spikes were; {ASKED}")
     if isinstance(track, pd.DataFrame):
         return _table(track)
-    if _is_series(track):
-        return of_series(_series(track), None, heading_unit)
-    if isinstance(track, tuple | list) and len(track) in {2, 3} and not hasattr(track, "positions"):
-        if _is_series(track[0]):
-            return of_series(_series(track[0]), _series(track[1]), heading_unit)
-        return track_of(*track)
-    poses = getattr(track, "poses", None)
-    if poses is not None:
-        return track_of(track.times, np.asarray(poses)[:, :2], np.asarray(poses)[:, 2])
-    if hasattr(track, "times") and hasattr(track, "positions"):
-        return track_of(track.times, track.positions, getattr(track, "headings", None))
-    raise CogmapError(f"a track cannot be made of {type(track).__name__}; {ASKED}")
+    found = _of_attributes(track)
+    if found is not None:
+        return found
+    parts = track if isinstance(track, tuple | list) else [track]
+    if parts and _is_series(parts[0]) and len(parts) < 3:
+        return of_series(*(_series(part) for part in parts), heading_unit=heading_unit)
+    if len(parts) not in {2, 3}:
+        raise CogmapError(f"a track cannot be made of {type(track).__name__}; {ASKED}")
+    return track_of(*parts)
 
 
-def of_series(positions: Series, headings: Series | None, heading_unit: str | None) -> Track:
+def of_series(positions: Series, headings: Series | None = None, *, heading_unit: str | None = None) -> Track:
     """Join positions and headings, which may have been sampled at other times.
 
     Raises
@@ -72,7 +69,7 @@ def of_series(positions: Series, headings: Series | None, heading_unit: str | No
     CogmapError
         For positions of more than two axes, headings of more than one, units that cannot be.
     """
-    places = positions.values.reshape(len(positions.times), -1)
+    places = positions.data.reshape(len(positions.times), -1)
     if places.shape[1] == 1:
         # Along a track that has been straightened.
         places = np.concatenate([places, np.zeros_like(places)], axis=1)
@@ -80,12 +77,22 @@ def of_series(positions: Series, headings: Series | None, heading_unit: str | No
         raise CogmapError(f"positions have {places.shape[1]} columns; give x and y alone")
     if headings is None:
         return track_of(positions.times, places, unit=positions.unit)
-    turns = headings.values.reshape(len(headings.times), -1)
+    turns = headings.data.reshape(len(headings.times), -1)
     if turns.shape[1] != 1:
         raise CogmapError(f"headings have {turns.shape[1]} columns; give one angle")
     radians = in_radians(turns[:, 0], headings.unit, heading_unit)
     ahead = headings_at(Series(headings.times, radians, None), positions.times)
     return track_of(positions.times, places, ahead, unit=positions.unit, heading_unit="rad")
+
+
+def _of_attributes(track: Any) -> Track | None:
+    """Read what has times, and positions or poses."""
+    poses = getattr(track, "poses", None)
+    if poses is not None:
+        return track_of(track.times, np.asarray(poses)[:, :2], np.asarray(poses)[:, 2])
+    if hasattr(track, "times") and hasattr(track, "positions"):
+        return track_of(track.times, track.positions, getattr(track, "headings", None))
+    return None
 
 
 def _table(table: pd.DataFrame) -> Track:

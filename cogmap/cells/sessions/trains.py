@@ -64,8 +64,8 @@ def _plain(source: Any) -> Trains:
     if isinstance(source, list | tuple) or (isinstance(source, np.ndarray) and source.dtype == object):
         return {str(index): _times(train) for index, train in enumerate(source)}
     raise CogmapError(
-        f"a session cannot be made of {type(source).__name__}; give an NWB file, a folder with spikes.csv and "
-        "track.csv, objects of pynapple or neo, or a list of spike times for each cell"
+        f"a session cannot be made of {type(source).__name__}; give an NWB file, a folder with spikes.csv "
+        "and track.csv, objects of pynapple or neo, or a list of spike times for each cell"
     )
 
 

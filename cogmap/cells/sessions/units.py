@@ -18,7 +18,7 @@ _WORDS = {
     "foot": "ft", "feet": "ft",
 }  # fmt: skip
 NARROWEST, WIDEST = 0.05, 20.0
-"""m; what 98 % of a track span: less is a still animal, more is no box, no maze and no track of a laboratory."""
+"""m; what 98 % of a track span: less is a still animal, more no box, maze or track of a laboratory."""
 DIGITS = 9
 """A nanometre."""
 TELLING = (
@@ -35,10 +35,11 @@ def positive(name: str, value: object, *, or_zero: bool = False) -> float:
     CogmapError
         For anything else.
     """
-    number = isinstance(value, Real) and not isinstance(value, bool) and np.isfinite(float(value))
-    if not (isinstance(value, Real) and number and (value > 0 or (or_zero and value == 0))):
-        raise CogmapError(f"{name} is {value!r}; give a {'number of 0 or more' if or_zero else 'positive number'}")
-    return float(value)
+    number = float(value) if isinstance(value, Real) and not isinstance(value, bool) else np.nan
+    if not (0 < number < np.inf or (or_zero and number == 0)):
+        wanted = "number of 0 or more" if or_zero else "positive number"
+        raise CogmapError(f"{name} is {value!r}; give a {wanted}")
+    return number
 
 
 def metres_per(said: str | None, unit: str | None, metres_per_unit: object) -> float:

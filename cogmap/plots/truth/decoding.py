@@ -1,4 +1,4 @@
-"""Decoding of a session: where its cells say that the animal was and faced, against where it was and faced."""
+"""Decoding of a session: where its cells say that the animal was and faced, against the truth."""
 
 from __future__ import annotations
 
@@ -8,7 +8,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cogmap.cells.sessions.decoding import Decoded
-from cogmap.plots.style import GOOD, INK, QUARTERS, SOFT, direction_colours, new_panels, tidy, tidy_legend, tidy_room
+from cogmap.plots.style import (
+    GOOD,
+    INK,
+    QUARTERS,
+    SOFT,
+    direction_colours,
+    new_panels,
+    tidy,
+    tidy_legend,
+    tidy_room,
+)
 from cogmap.plots.truth.errors import draw_agreement, draw_moves
 
 
@@ -55,6 +65,4 @@ def _draw_room(axes: Axes, decoded: Decoded) -> None:
     length = 100 * np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     tidy_room(axes, title=f"true (dot) to decoded position, {count:,} windows")
     axes.scatter(true[:, 0], true[:, 1], s=2.5, color=INK, linewidths=0, zorder=3)
-    draw_moves(
-        axes, ends, length, "position error (cm)", longest=float(np.percentile(length, 99)), width=0.9
-    )
+    draw_moves(axes, ends, length, "position error (cm)", longest=float(np.percentile(length, 99)), width=0.9)

@@ -3,7 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cogmap.cells import MeasuredSession, heading_statistics, place_fields, place_statistics, rate_maps, session
+from cogmap.cells import (
+    MeasuredSession,
+    heading_statistics,
+    place_fields,
+    place_statistics,
+    rate_maps,
+    session,
+)
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +50,7 @@ def test_cells_are_what_they_were_made(found: MeasuredSession) -> None:
     assert np.abs(turned).max() < 0.1
 
 
-def test_without_headings_the_table_has_the_same_columns(rat, found: MeasuredSession) -> None:
+def test_without_headings_the_table_has_the_same_columns(found: MeasuredSession) -> None:
     blind = MeasuredSession(replace(found.session, headings=None), shuffles=5)
     assert list(blind.table) == list(found.table)
     unknown = ["mean_vector_length", "mean_vector_length_p", "rayleigh_p", "drift_deg"]

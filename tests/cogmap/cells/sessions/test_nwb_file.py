@@ -29,7 +29,9 @@ def write(rat, tmp_path: Path) -> Callable[..., Path]:
     """Write the rat as NWB, with these series as its position and heading."""
 
     def to(
-        positions: list[pynwb.behavior.SpatialSeries], headings: pynwb.behavior.SpatialSeries | None, **units: Any
+        positions: list[pynwb.behavior.SpatialSeries],
+        headings: pynwb.behavior.SpatialSeries | None,
+        **units: Any,
     ) -> Path:
         file = pynwb.NWBFile("rat", "rat", datetime(2000, 1, 1, tzinfo=UTC))
         module = file.create_processing_module("behavior", "where it was")
@@ -85,9 +87,9 @@ def test_what_the_file_says_gives_way_to_what_is_told(rat, write) -> None:
     places = series("led", rat.positions * 100, timestamps=rat.times, unit="meters")
     turns = series("hd", np.rad2deg(rat.headings), timestamps=rat.times, unit="radians")
     path = write([places], turns)
-    with pytest.raises(CogmapError, match="headings reach 1[78]"):
+    with pytest.raises(CogmapError, match=r"headings reach 1[78]"):
         session(path, unit="cm")
-    with pytest.raises(CogmapError, match="positions span 9.*unit='cm'"):
+    with pytest.raises(CogmapError, match=r"positions span 9.*unit='cm'"):
         session(path, heading_unit="deg")
     same(session(path, unit="cm", heading_unit="deg"), rat)
     same(session(path, metres_per_unit=0.01, heading_unit="deg"), rat)
@@ -119,7 +121,9 @@ def test_one_of_several_series_is_chosen(rat, write) -> None:
         for name, by in (("front", 0.0), ("back", 0.1))
     ]
     path = write(lamps, None)
-    with pytest.raises(CogmapError, match="more than one position: Position/back, Position/front.*position="):
+    with pytest.raises(
+        CogmapError, match=r"more than one position: Position/back, Position/front.*position="
+    ):
         session(path)
     for name in ("front", "Position/front"):
         np.testing.assert_array_equal(session(path, position=name).positions, rat.positions)

@@ -33,14 +33,17 @@ def test_tuning_is_that_of_pynapple(rat) -> None:
 
 
 @pytest.mark.parametrize(
-    ("per_metre", "told"), [(100.0, {"unit": "cm"}), (400.0, {"metres_per_unit": 0.0025}), (1000.0, {"unit": "mm"})]
+    ("per_metre", "told"),
+    [(100.0, {"unit": "cm"}), (400.0, {"metres_per_unit": 0.0025}), (1000.0, {"unit": "mm"})],
 )
 def test_units_give_the_table_of_metres(rat, per_metre: float, told: dict[str, object]) -> None:
     """Whole millimetres, ten of which lie on the edges of bins."""
     places = np.round(rat.positions, 3)
     track = (rat.times, np.round(places * per_metre, 6), rat.headings)
     plain = MeasuredSession(session(rat.trains, track=(rat.times, places, rat.headings)), shuffles=5)
-    with pytest.raises(CogmapError, match=r"positions span [39]\d+.* × [39]\d+.* metres_per_unit=.* unit='m'"):
+    with pytest.raises(
+        CogmapError, match=r"positions span [39]\d+.* × [39]\d+.* metres_per_unit=.* unit='m'"
+    ):
         session(rat.trains, track=track)
     found = MeasuredSession(session(rat.trains, track=track, **told), shuffles=5)
     pd.testing.assert_frame_equal(found.table, plain.table, rtol=0, atol=1e-6)

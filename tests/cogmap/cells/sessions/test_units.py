@@ -26,7 +26,7 @@ def test_other_words_are_refused() -> None:
 
 @pytest.mark.parametrize("wrong", [0, -1, np.nan, np.inf, "two", True, None, [1.0]])
 def test_what_is_no_positive_number(wrong: object) -> None:
-    with pytest.raises(CogmapError, match="length is .* positive number"):
+    with pytest.raises(CogmapError, match=r"length is .* positive number"):
         positive("length", wrong)
     assert positive("length", 0, or_zero=True) == 0
 
