@@ -6,7 +6,7 @@ All take samples: one row per view, each view one unit of occupancy; rates in Hz
 in rad.
 """
 
-from cogmap.cells.decoding.bayes import poisson_posterior
+from cogmap.cells.decoding.bayes import JointPosterior, joint_posterior, poisson_posterior
 from cogmap.cells.decoding.decoders import (
     HeadingFrame,
     MapFrame,
@@ -42,6 +42,7 @@ __all__ = [
     "BinEdges",
     "Decoded",
     "HeadingFrame",
+    "JointPosterior",
     "Lattice",
     "MapFrame",
     "MeasuredSession",
@@ -64,6 +65,7 @@ __all__ = [
     "heading_centres",
     "heading_errors",
     "heading_statistics",
+    "joint_posterior",
     "lattice",
     "likeliest",
     "map_stability",

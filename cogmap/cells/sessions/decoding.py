@@ -8,15 +8,16 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from arena.angles import wrap_angle
-from cogmap.cells.decoding.bayes import poisson_posterior
+from cogmap.cells.decoding.bayes import joint_posterior, poisson_posterior
 from cogmap.cells.decoding.decoders import likeliest
+from cogmap.cells.measures.place_by_direction import PlaceByDirection, place_by_direction
 from cogmap.cells.rates.bins import bin_edges, heading_centres
-from cogmap.cells.rates.maps import rate_maps
-from cogmap.cells.rates.tuning import tuning_curves
+from cogmap.cells.rates.maps import RateMaps, rate_maps
 from cogmap.cells.sessions.session import Session
 from cogmap.cells.sessions.units import positive
 
 FOLDS = 5
+DIRECTIONS = 36
 BLOCK = 30.0
 """s that stay together: neighbouring samples are too alike to be told from each other."""
 
@@ -68,8 +69,11 @@ def decode_session(
 ) -> Decoded | None:
     """Decode position and heading from the spikes of all cells, by Bayes' rule for independent Poisson cells.
 
+    Where headings are known, place and direction are decoded together, each cell's rate being a map times a
+    curve.
+
     The session is cut into blocks of 30 s (a tenth of it where it is short), dealt out to five folds in turn;
-    each fold is decoded from the maps and curves of the other four. Where only rates are known, they stand
+    each fold is decoded from what the other four tell of the cells. Where only rates are known, they stand
     for the spikes that are expected. A place is as likely as another before a cell is heard.
 
     Parameters
@@ -110,18 +114,39 @@ def decode_session(
     for index in range(FOLDS):
         test, train = fold == index, windows[fold != index].ravel()
         maps = rate_maps(session.rates[train], session.positions[train], bin, smoothing, edges=edges)
-        posterior = poisson_posterior(heard[test], maps.patterns, seconds=seconds)
+        if session.headings is None:
+            posterior = poisson_posterior(heard[test], maps.patterns, seconds=seconds)
+        else:
+            apart = _apart(session, train, maps, smoothing)
+            seen = ~np.isnan(apart.gains).any(axis=0)
+            posterior, of_heading = joint_posterior(
+                heard[test], apart.rates, apart.gains[:, seen], seconds=seconds
+            )
+            turns[test] = likeliest(of_heading, heading_centres(len(seen))[seen])
         places[test] = likeliest(posterior, maps.places)
-        if session.headings is not None:
-            curves = tuning_curves(session.rates[train], session.headings[train])
-            seen = ~np.isnan(curves).any(axis=0)
-            posterior = poisson_posterior(heard[test], curves[:, seen], seconds=seconds)
-            turns[test] = likeliest(posterior, heading_centres(curves.shape[1])[seen])
     truly = session.positions[windows].mean(axis=1)
     if session.headings is None:
         return Decoded(starts, truly, places, None, None)
     faced = np.angle(np.exp(1j * session.headings[windows]).mean(axis=1))
     return Decoded(starts, truly, places, faced, turns)
+
+
+def _apart(
+    session: Session, train: Int[np.ndarray, "train"], maps: RateMaps, smoothing: float
+) -> PlaceByDirection:
+    """Part what each cell tells of place from what it tells of direction; a silent one tells nothing."""
+    rates, everywhere = session.rates[train], np.broadcast_to(maps.visited, maps.rates.shape)
+    apart = place_by_direction(
+        rates,
+        session.positions[train],
+        np.asarray(session.headings)[train],
+        maps,
+        everywhere,
+        bins=DIRECTIONS,
+        smoothing=smoothing,
+    )
+    silent = ~rates.any(axis=0)[:, None]
+    return apart._replace(gains=np.where(silent, 1.0, apart.gains))
 
 
 def _windows(session: Session, size: int) -> Int[np.ndarray, "windows size"]:

@@ -140,8 +140,8 @@ def _position(file: Any, name: str | None) -> Any:
         known = ", ".join(map(_name, _of_kind(file, "SpatialSeries"))) or "no spatial series at all"
         told = "" if name is None else f" {name!r}"
         raise CogmapError(
-            f"the file has no position{told}; it has {known}: say which it is, as position='NAME', or give the "
-            "track= from elsewhere"
+            f"the file has no position{told}; it has {known}: say which it is, as position='NAME', or give "
+            "the track= from elsewhere"
         )
     return found
 

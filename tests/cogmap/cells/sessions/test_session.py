@@ -81,6 +81,8 @@ def test_lost_samples_and_gaps_are_left_out_and_their_spikes_counted(rat) -> Non
     expected = rat.counts[there].astype(float)
     expected[np.flatnonzero(there == 999)] += rat.counts[1000]
     np.testing.assert_array_equal(found.counts, expected)
+    lasting = np.where(there == 999, 0.1, 0.05)
+    np.testing.assert_allclose(found.rates, expected / lasting[:, None], rtol=1e-9)
     assert (found.notes["lost"], found.notes["without_heading"]) == (50, 10)
     assert found.notes["spikes_outside"] == rat.counts[1001:3000].sum()
     assert found.notes["spikes_left_out"] == rat.counts[100:160].sum()
