@@ -12,6 +12,7 @@ from arena import Recording
 from arena.atomic import check_absent
 from cogmap.atomic import atomic_write
 from cogmap.cells import poisson_spikes
+from cogmap.cells.sessions.samples import sample_durations
 from cogmap.errors import CogmapError
 from cogmap.inputs import checked_count
 from cogmap.map.cognitive_map import CognitiveMap
@@ -56,7 +57,11 @@ def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int
     check_absent(out, CogmapError)
     if recording.poses is None:
         raise CogmapError("the recording has no poses to export; use one that kept them")
-    lasting = _durations(recording.times)
+    if len(recording.times) < 2 or not (np.diff(recording.times) > 0).all():
+        raise CogmapError(
+            "the times of the recording do not increase; give two views or more, in their order"
+        )
+    lasting = sample_durations(recording.times)
     rng = np.random.default_rng(checked_count("seed", seed, 0))
     activity = cmap.perceive(recording.views)
     rates = {name: getattr(activity, name).astype(float) for name in ("place", "heading")}
@@ -64,19 +69,6 @@ def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int
     file = _lay_out(recording, rates, spikes)
     with atomic_write(out) as fresh, pynwb.NWBHDF5IO(fresh, "w") as disk:
         disk.write(file)
-
-
-def _durations(times: Float[np.ndarray, " views"]) -> Float[np.ndarray, " views"]:
-    """Tell how long each view lasts, s."""
-    if len(times) < 2 or not (np.diff(times) > 0).all():
-        raise CogmapError(
-            "the times of the recording do not increase; give two views or more, in their order"
-        )
-    steps = np.diff(times)
-    usual = float(np.median(steps))
-    # In the gaps of a path nobody looks.
-    lasting: np.ndarray = np.minimum(np.append(steps, usual), 2 * usual)
-    return lasting
 
 
 def _spike_times(
@@ -87,10 +79,14 @@ def _spike_times(
 ) -> list[Float[np.ndarray, " spikes"]]:
     """Draw the times of each cell's spikes, s."""
     counts = poisson_spikes(rates * lasting[:, None], rng, peak=None, seconds=1.0)
-    trains = []
+    ends = np.minimum(np.append(times[1:], np.inf), times + lasting)
+    digits, trains = -round(np.log10(RESOLUTION)), []
     for count in counts.T:
-        when = np.repeat(times, count) + np.repeat(lasting, count) * rng.random(count.sum())
-        trains.append(np.sort(when).round(-round(np.log10(RESOLUTION))))
+        start, end = np.repeat(times, count), np.repeat(ends, count)
+        when = (start + np.repeat(lasting, count) * rng.random(count.sum())).round(digits)
+        # What rounding carries into the view before or after is counted there by whoever reads it.
+        when += RESOLUTION * (when < start) - RESOLUTION * (when >= end)
+        trains.append(np.sort(when.round(digits)))
     return trains
 
 

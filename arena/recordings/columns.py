@@ -123,10 +123,10 @@ def _reading(path: Path) -> Iterator[None]:
         raise
     except OSError as error:
         why = error.strerror or (str(error).splitlines() or ["it cannot be opened"])[0]
-        raise ArenaError(f"cannot read the path {path}: {why}") from None
+        raise ArenaError(f"cannot read {path}: {why}") from None
     except _DAMAGE:
         raise ArenaError(
-            f"cannot read the path {path}: it is damaged, of another kind or holds Python objects"
+            f"cannot read {path}: it is damaged, of another kind or holds Python objects"
         ) from None
 
 

@@ -62,9 +62,11 @@ def choose_columns(path: Path, names: Sequence[str], told: TrackFormat) -> Track
                 f"{path} has no likelihood of {part or 'x and y'} for least_likelihood; "
                 f"it has {listed(names)}; name its column: likelihood="
             )
-    track = _named(names, ("track",)) if part or told.track is not None else None
-    if told.track is not None and track is None:
-        raise ArenaError(f"{path} has no column track for track={told.track!r}; it has {listed(names)}")
+    track = _named(names, ("track",)) if part or told.individual is not None else None
+    if told.individual is not None and track is None:
+        raise ArenaError(
+            f"{path} has no column track for individual={told.individual!r}; it has {listed(names)}"
+        )
     found = TrackColumns(str(x), str(y), t, told.heading or _named(names, HEADINGS), likelihood, track)
     check_names(path, names, found.all)
     return found

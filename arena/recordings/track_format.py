@@ -41,8 +41,8 @@ class TrackFormat(Settings):
     bodypart
         Of tables of DeepLabCut or SLEAP, `rat1.nose` where they tell of several animals. None where there is
         only one.
-    track
-        Of tables of SLEAP that hold several.
+    individual
+        The animal, of tables of SLEAP that hold several: a value of their column `track`.
     likelihood, least_likelihood
         The column of it, None for that of the body part (`nose.likelihood`, `nose.score`), and the least that
         a sample must have, in [0, 1]; those below are lost. None keeps all.
@@ -76,7 +76,7 @@ class TrackFormat(Settings):
     heading: Name | None = None
     heading_in: Literal["rad", "deg"] | None = None
     bodypart: Name | None = None
-    track: Name | None = None
+    individual: Name | None = None
     likelihood: Name | None = None
     least_likelihood: Share | None = None
     rate: Above | None = None

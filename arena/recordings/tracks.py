@@ -145,11 +145,11 @@ def _rows_of_track(path: Path, found: TrackColumns, told: TrackFormat) -> tuple[
         return columns, rows
     tracks = columns.pop(found.track)
     there = list(dict.fromkeys(tracks.tolist()))
-    if told.track is None and len(there) > 1:
-        raise ArenaError(f"{path} has several tracks, {listed(there)}; choose one: track={there[0]!r}")
-    if told.track is not None and told.track not in there:
-        raise ArenaError(f"{path} has no track {told.track!r}; it has {listed(there)}")
-    mine = tracks == (told.track if told.track is not None else tracks)
+    if told.individual is None and len(there) > 1:
+        raise ArenaError(f"{path} has several tracks, {listed(there)}; choose one: individual={there[0]!r}")
+    if told.individual is not None and told.individual not in there:
+        raise ArenaError(f"{path} has no track {told.individual!r}; it has {listed(there)}")
+    mine = tracks == (told.individual if told.individual is not None else tracks)
     return {name: values[mine] for name, values in columns.items()}, rows[mine]
 
 

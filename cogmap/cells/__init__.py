@@ -1,10 +1,12 @@
 """Measures of cells: maps, curves, statistics and their nulls; spikes, and what can be decoded from them.
 
+`session` reads an animal's spikes and track, `MeasuredSession` measures its cells.
+
 All take samples: one row per view, each view one unit of occupancy; rates in Hz, positions in m, headings
 in rad.
 """
 
-from cogmap.cells.decoding.bayes import poisson_posterior
+from cogmap.cells.decoding.bayes import JointPosterior, joint_posterior, poisson_posterior
 from cogmap.cells.decoding.decoders import (
     HeadingFrame,
     MapFrame,
@@ -32,15 +34,22 @@ from cogmap.cells.rates.maps import RateMaps, rate_maps
 from cogmap.cells.rates.shuffling import ShuffleTest, shuffle_test
 from cogmap.cells.rates.spikes import poisson_spikes
 from cogmap.cells.rates.tuning import Tuning, mean_vectors, tuning_curves, tuning_widths
+from cogmap.cells.sessions.decoding import Decoded, decode_session
+from cogmap.cells.sessions.measured import MeasuredSession
+from cogmap.cells.sessions.session import Session, session
 
 __all__ = [
     "BinEdges",
+    "Decoded",
     "HeadingFrame",
+    "JointPosterior",
     "Lattice",
     "MapFrame",
+    "MeasuredSession",
     "PlaceFields",
     "RateMaps",
     "RayleighTest",
+    "Session",
     "ShuffleTest",
     "Tuning",
     "autocorrelograms",
@@ -48,6 +57,7 @@ __all__ = [
     "coherence",
     "curve_stability",
     "decode_positions",
+    "decode_session",
     "fit_heading_frame",
     "fit_map_frame",
     "grid_statistics",
@@ -55,6 +65,7 @@ __all__ = [
     "heading_centres",
     "heading_errors",
     "heading_statistics",
+    "joint_posterior",
     "lattice",
     "likeliest",
     "map_stability",
@@ -71,6 +82,7 @@ __all__ = [
     "rate_maps",
     "rayleigh_test",
     "selectivity",
+    "session",
     "shuffle_test",
     "sparsity",
     "spatial_information",

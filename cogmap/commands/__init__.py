@@ -12,6 +12,7 @@ app = App(
 )
 _COMMANDS = {
     "arena": "rooms:_arena",
+    "cells": "cells:_cells",
     "check": "checking:_check",
     "demo": "results:_demo",
     "dream": "acting:_dream",

@@ -11,6 +11,7 @@ import pandas as pd
 from jaxtyping import Float
 
 from cogmap import cells
+from cogmap.cells.measures.both import join_statistics
 from cogmap.cells.measures.correlations import correlations
 
 
@@ -88,14 +89,8 @@ class CellMetrics:
 
     @property
     def table(self) -> pd.DataFrame:
-        """Columns of `place_statistics` and `heading_statistics`, `place_passing` and `heading_passing`.
-
-        The spatial information of the second is `spatial_information_beyond_heading`.
-        """
-        mine = self.heading[["preferred_direction_rad", "mean_vector_length", "drift_deg"]]
-        mine = mine.assign(spatial_information_beyond_heading=self.heading["spatial_information"])
-        table = self.place.drop(columns="passing").join(mine)
-        return table.assign(place_passing=self.place["passing"], heading_passing=self.heading["passing"])
+        """`join_statistics` of both."""
+        return join_statistics(self.place, self.heading)
 
     def coverage(self, places: Float[np.ndarray, "points 2"]) -> float:
         """Part of the area of these places (m) that is inside some passing field."""

@@ -37,6 +37,7 @@ from cogmap.plots.shape.barcodes import plot_barcodes
 from cogmap.plots.shape.embedding import plot_embedding
 from cogmap.plots.sweep import plot_trend
 from cogmap.plots.truth.confusion import plot_confusion
+from cogmap.plots.truth.decoding import plot_decoding
 from cogmap.plots.truth.heading_errors import plot_compass
 from cogmap.plots.truth.localisation import plot_localisation
 from cogmap.plots.truth.metric_map import plot_metric_map
@@ -56,6 +57,7 @@ __all__ = [
     "plot_coordinates",
     "plot_courses",
     "plot_cue_control",
+    "plot_decoding",
     "plot_dream_errors",
     "plot_dreams",
     "plot_embedding",

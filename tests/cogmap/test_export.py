@@ -5,12 +5,16 @@ from pathlib import Path
 
 import numpy as np
 import nwbinspector
+import pandas as pd
 import pynapple
 import pynwb
 import pytest
 
 from arena import Recording
-from cogmap import CogmapError, CognitiveMap
+from cogmap import CogmapError, CognitiveMap, cli
+from cogmap.cells import MeasuredSession, heading_statistics, place_statistics, poisson_spikes, session
+from cogmap.cells.measures.both import join_statistics
+from cogmap.evaluation.map_session import map_session
 from cogmap.export import RESOLUTION, export_nwb
 
 pytestmark = [
@@ -74,7 +78,7 @@ def test_cells_spike_as_often_as_their_rates_say(out: Path, short: Recording, cm
 def test_head_direction_cells_are_tuned(out: Path, cmap: CognitiveMap) -> None:
     data = pynapple.load_file(str(out))
     cells = [cell for cell, kind in enumerate(data["units"]["cell_type"]) if kind == "heading"]
-    turn = pynapple.Tsd(data["heading"].times(), data["heading"].values[:] % (2 * np.pi))
+    turn = pynapple.Tsd(data["heading"].times(), data["heading"].d[:] % (2 * np.pi))
     curves = pynapple.compute_tuning_curves(
         data["units"][cells], turn, bins=12, range=(0, 2 * np.pi), feature_names=["heading"]
     ).to_numpy()
@@ -82,6 +86,55 @@ def test_head_direction_cells_are_tuned(out: Path, cmap: CognitiveMap) -> None:
     vectors = np.abs((np.nan_to_num(curves) @ np.exp(1j * angles)) / np.nan_to_num(curves).sum(axis=1))
     assert len(cells) == cmap.heading_cells
     assert np.median(vectors) > 0.5
+
+
+@pytest.fixture(scope="module")
+def drawn(short: Recording, cmap: CognitiveMap) -> np.ndarray:
+    """Spikes of each place cell in each view, drawn as the export draws them, and not via their times."""
+    steps = np.diff(short.times)
+    lasting = np.minimum(np.append(steps, np.median(steps)), 2 * np.median(steps))
+    place = cmap.perceive(short.views).place.astype(float)
+    return poisson_spikes(place * lasting[:, None], np.random.default_rng(3), peak=None, seconds=1.0)
+
+
+def test_a_session_of_its_spikes_is_what_was_drawn(out: Path, short: Recording, drawn: np.ndarray) -> None:
+    found = session(out)
+    place = found.population("place")
+    np.testing.assert_array_equal(place.counts, drawn)
+    np.testing.assert_array_equal(found.positions, short.poses[:, :2])
+    np.testing.assert_allclose(found.headings, short.poses[:, 2], rtol=0, atol=1e-12)
+    assert (found.notes["spikes_outside"], found.notes["lost"]) == (0, 0)
+
+
+def test_the_command_gives_the_table_of_the_direct_route(
+    out: Path, short: Recording, cmap: CognitiveMap, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By spikes whose times never went through a file with their track."""
+    with pynwb.NWBHDF5IO(out, "r") as disk:
+        units = disk.read().units
+        trains = [np.asarray(units.get_unit_spike_times(index)) for index in range(len(units))]
+    positions, headings = short.poses[:, :2], short.poses[:, 2]
+    rates = session(trains, track=(short.times, positions, headings)).rates
+    place = place_statistics(rates, positions, headings)
+    direct = join_statistics(place, heading_statistics(rates, positions, headings)).reset_index(drop=True)
+    words = ["cells", out, "--out", tmp_path / "cells", "--shuffles", 1]
+    monkeypatch.setattr(sys, "argv", ["cogmap", *map(str, words)])
+    cli.main()
+    table = pd.read_parquet(tmp_path / "cells" / "cells.parquet")
+    pd.testing.assert_frame_equal(table[list(direct)], direct, rtol=0, atol=1e-6)
+    assert list(table["population"]) == ["place"] * cmap.place_cells + ["heading"] * cmap.heading_cells
+
+
+def test_the_rates_in_the_file_have_the_table_of_the_map(
+    out: Path, short: Recording, cmap: CognitiveMap
+) -> None:
+    read = MeasuredSession(session(out, activity="rates"), shuffles=3).table
+    straight = MeasuredSession(map_session(short, cmap), shuffles=3).table
+    pd.testing.assert_frame_equal(read, straight, rtol=0, atol=1e-6)
+    activity = cmap.perceive(short.views)
+    rates = np.hstack([activity.place, activity.heading]).astype(float)
+    place = place_statistics(rates, short.poses[:, :2], short.poses[:, 2])
+    np.testing.assert_allclose(read["spatial_information"], place["spatial_information"], rtol=0, atol=1e-6)
 
 
 def test_the_seed_draws_the_spikes(short: Recording, cmap: CognitiveMap, out: Path, tmp_path: Path) -> None:

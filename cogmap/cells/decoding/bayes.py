@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from jaxtyping import Float, Real
 from scipy import special
@@ -9,6 +11,9 @@ from scipy import special
 from cogmap.cells.rates.spikes import SECONDS, check_seconds
 from cogmap.errors import CogmapError
 from cogmap.inputs import check_array, check_samples
+
+PAIRS = 4_000_000
+"""Of place and direction, that are weighed at once."""
 
 
 def poisson_posterior(
@@ -59,3 +64,56 @@ def poisson_posterior(
             raise CogmapError("prior is negative or nowhere positive; give a probability to every bin")
         likelihood += special.xlogy(1, prior)
     return np.asarray(special.softmax(likelihood, axis=1))
+
+
+class JointPosterior(NamedTuple):
+    """What spikes say of place and heading together, each for itself in the end."""
+
+    place: Float[np.ndarray, "views bins"]
+    heading: Float[np.ndarray, "views directions"]
+
+
+def joint_posterior(
+    spikes: Real[np.ndarray, "views cells"],
+    rates: Float[np.ndarray, "cells bins"],
+    gains: Float[np.ndarray, "cells directions"],
+    *,
+    seconds: float = SECONDS,
+    faintest: float = 1e-3,
+) -> JointPosterior:
+    """Probability of each place and of each direction given the spikes of cells that are tuned to both.
+
+    P(x, θ | n) ∝ Π (p_i(x) d_i(θ))^{n_i} exp(−T Σ p_i(x) d_i(θ)), summed over θ for places, over x for
+    directions. A head-direction cell tells of place what it says of direction where the animal happened to
+    look; `poisson_posterior` takes it at its word.
+
+    Parameters
+    ----------
+    spikes
+        How often each cell fired in each view, (views, cells).
+    rates, gains
+        p in Hz and d, of mean 1, of the same cells, as `place_by_direction` factorises their rates.
+    seconds
+        T, how long a view lasts.
+    faintest
+        Hz; no p is lower, and no d lower than this share.
+
+    Raises
+    ------
+    CogmapError
+        For values that are negative or not finite, shapes that do not fit.
+    """
+    check_samples(spikes)
+    check_array("rates", rates, (spikes.shape[1], None))
+    check_array("gains", gains, (spikes.shape[1], None))
+    check_seconds(seconds)
+    p, d = np.maximum(rates.astype(float), faintest), np.maximum(gains.astype(float), faintest)
+    expected = seconds * (p.T @ d)
+    of_place, of_heading = spikes @ np.log(p), spikes @ np.log(d)
+    places, headings = np.empty_like(of_place), np.empty_like(of_heading)
+    for views in np.array_split(np.arange(len(spikes)), -(-len(spikes) * expected.size // PAIRS)):
+        scores = of_place[views, :, None] + of_heading[views, None, :] - expected
+        scores -= scores.max(axis=(1, 2), keepdims=True)
+        np.exp(scores, out=scores)
+        places[views], headings[views] = scores.sum(axis=2), scores.sum(axis=1)
+    return JointPosterior(*(part / part.sum(axis=1, keepdims=True) for part in (places, headings)))

@@ -28,6 +28,7 @@ def heading_statistics(
     headings: Float[np.ndarray, "views"],
     *,
     maps: RateMaps | None = None,
+    smoothing: float = 0.15,
     seconds: float = SECONDS,
     least_vector: float = LEAST_VECTOR,
     most_drift_deg: float = 15.0,
@@ -47,6 +48,8 @@ def heading_statistics(
         In rad, (views,).
     maps
         The rate maps of these cells; by default `rate_maps(rates, positions)`.
+    smoothing
+        Of the maps, m.
     seconds
         How long a view lasts; with the rates it says how many spikes the Rayleigh test has.
     least_vector
@@ -78,7 +81,9 @@ def heading_statistics(
     curves = tuning_curves(rates, headings)
     vector = mean_vectors(curves)
     everywhere = np.broadcast_to(maps.visited, maps.rates.shape)
-    apart = place_by_direction(rates, positions, headings, maps, everywhere, bins=curves.shape[1])
+    apart = place_by_direction(
+        rates, positions, headings, maps, everywhere, bins=curves.shape[1], smoothing=smoothing
+    )
     length, information = np.abs(vector), information_per_spike(apart.exposure, apart.rates)
     drift = np.rad2deg(_drift(rates, positions, headings, vector))
     columns = {

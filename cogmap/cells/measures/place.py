@@ -24,10 +24,11 @@ MOST_DIRECTION = 0.25
 def place_statistics(
     rates: Float[np.ndarray, "views cells"],
     positions: Float[np.ndarray, "views 2"],
-    headings: Float[np.ndarray, "views"],
+    headings: Float[np.ndarray, "views"] | None,
     *,
     maps: RateMaps | None = None,
     fields: PlaceFields | None = None,
+    smoothing: float = 0.15,
     least_information: float = LEAST_INFORMATION,
     most_direction: float = MOST_DIRECTION,
 ) -> pd.DataFrame:
@@ -43,11 +44,13 @@ def place_statistics(
     positions
         In m, (views, 2).
     headings
-        In rad, (views,).
+        In rad, (views,); None when nobody knows them: direction is then no part of passing.
     maps
         The rate maps of these cells; by default `rate_maps(rates, positions)`.
     fields
         The fields in these maps; by default `place_fields(maps)`.
+    smoothing
+        Of the maps, m.
     least_information
         bit/spike; a place cell has more.
     most_direction
@@ -73,8 +76,13 @@ def place_statistics(
     fields = place_fields(maps) if fields is None else fields
     edges = maps.edges
     unsmoothed = rate_maps(rates, positions, edges.side, 0.0, edges=edges, visited=maps.visited)
-    apart = place_by_direction(rates, positions, headings, maps, fields.masks, bins=12)
-    direction = np.abs(mean_vectors(apart.gains))
+    direction, undirected = np.full(len(maps), np.nan), True
+    if headings is not None:
+        apart = place_by_direction(
+            rates, positions, headings, maps, fields.masks, bins=12, smoothing=smoothing
+        )
+        direction = np.abs(mean_vectors(apart.gains))
+        undirected = direction < most_direction
     information, single = spatial_information(maps), fields.number == 1
     columns = {
         "peak_rate_hz": np.nanmax(maps.rates, axis=(1, 2)),
@@ -87,8 +95,8 @@ def place_statistics(
         "sparsity": sparsity(maps),
         "selectivity": selectivity(maps),
         "coherence": coherence(unsmoothed),
-        "stability": map_stability(rates, positions, edges),
+        "stability": map_stability(rates, positions, edges, smoothing),
         "in_field_direction_vector": direction,
-        "passing": single & (information > least_information) & (direction < most_direction),
+        "passing": single & (information > least_information) & undirected,
     }
     return pd.DataFrame(columns).rename_axis("cell")

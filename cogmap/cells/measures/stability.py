@@ -12,11 +12,14 @@ from cogmap.cells.rates.tuning import tuning_curves
 
 
 def map_stability(
-    rates: Float[np.ndarray, "views cells"], positions: Float[np.ndarray, "views 2"], edges: BinEdges
+    rates: Float[np.ndarray, "views cells"],
+    positions: Float[np.ndarray, "views 2"],
+    edges: BinEdges,
+    smoothing: float = 0.15,
 ) -> Float[np.ndarray, "cells"]:
     """Correlation between the rate maps of the first and of the second half of the views.
 
-    Over the bins visited in both, with the smoothing of `rate_maps`; views outside the edges are left out.
+    Over the bins visited in both, with this `smoothing` in m; views outside the edges are left out.
     NaN where a half is constant.
 
     Source: Langston et al. 2010, Development of the spatial representation system in the rat, Science 328.
@@ -25,7 +28,9 @@ def map_stability(
     if len(inside) < 2:
         return np.full(rates.shape[1], np.nan)
     first, second = (
-        rate_maps(rates[half], positions[half], edges.side, edges=edges).rates.reshape(rates.shape[1], -1)
+        rate_maps(rates[half], positions[half], edges.side, smoothing, edges=edges).rates.reshape(
+            rates.shape[1], -1
+        )
         for half in np.array_split(inside, 2)
     )
     return correlations(first, second)

@@ -19,6 +19,7 @@ from cogmap.errors import CogmapError
 from cogmap.experiments.provenance import PROVENANCE
 from cogmap.experiments.registry import experiments
 from cogmap.experiments.result import CAPTIONS
+from cogmap.experiments.sessions import CELLS
 from cogmap.tables import as_rows, shown
 
 LONGEST = 500
@@ -95,6 +96,8 @@ def read_contents(folder: Path) -> Contents:
     kind = "sweep" if table is not None else str(given.get("experiment", "demo"))
     place = f" in {given['arena']}" if "arena" in given else ""
     chosen = experiments().get(kind)
+    # Those of cells are read cell by cell, not as what is behind figures.
+    show = _whole if kind == CELLS else _summary
     behind = [path for path in sorted(folder.glob("*.parquet")) if path.name not in swept]
     return Contents(
         title=f"{kind.replace('_', ' ').capitalize()}{place}",
@@ -107,7 +110,7 @@ def read_contents(folder: Path) -> Contents:
         ],
         tables=[
             *([] if table is None else [_read(table, _whole)]),
-            *(_read(path, _summary) for path in behind),
+            *(_read(path, show) for path in behind),
         ],
         files={path.name: _read(path, _text) for path in sorted(folder.glob("*.toml"))},
         command=about.get("command", ""),

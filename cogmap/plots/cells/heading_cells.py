@@ -23,7 +23,10 @@ from cogmap.plots.style import (
 
 
 def plot_tuning_curves(
-    curves: Float[np.ndarray, "cells bins"], statistics: pd.DataFrame, count: int = 24
+    curves: Float[np.ndarray, "cells bins"],
+    statistics: pd.DataFrame,
+    count: int = 24,
+    what: str = "head-direction cells",
 ) -> Figure:
     """Draw a sheet of polar tuning curves, coloured by preferred direction.
 
@@ -40,6 +43,8 @@ def plot_tuning_curves(
         `heading_statistics` of the same cells.
     count
         Curves on the sheet at most.
+    what
+        They are called in its title.
 
     Raises
     ------
@@ -67,7 +72,7 @@ def plot_tuning_curves(
         _draw_circle(axes, centre, named=index == 0)
         _draw_curve(axes, curves[cell], statistics.iloc[cell], f"cell {cell}", centre)
     axes.set(xlim=(-1.55, right), ylim=(bottom, 1.6), aspect="equal")
-    drawn = f"{len(cells)} of {len(curves)} head-direction cells: rate (Hz) by true heading (°), mean vector"
+    drawn = f"{len(cells)} of {len(curves)} {what}: rate (Hz) by true heading (°), mean vector"
     title_sheet(figure, drawn, statistics["passing"])
     heading_bar(axes, "preferred direction (°)")
     return figure

@@ -17,7 +17,9 @@ from cogmap.plots.style import ABSENT, colour_bar, new_panels, tidy, title_cell,
 COLOURS = colormaps["viridis"].with_extremes(bad=ABSENT)
 
 
-def plot_rate_maps(maps: RateMaps, statistics: pd.DataFrame, count: int = 40) -> Figure:
+def plot_rate_maps(
+    maps: RateMaps, statistics: pd.DataFrame, count: int = 40, what: str = "place cells"
+) -> Figure:
     """Draw a sheet of rate maps, each as a fraction of its peak, never visited bins grey.
 
     Cells are ordered like their fields in the room: in bands of equal number from the top to the bottom, from
@@ -32,6 +34,8 @@ def plot_rate_maps(maps: RateMaps, statistics: pd.DataFrame, count: int = 40) ->
         `place_statistics` of the same cells.
     count
         Maps on the sheet at most.
+    what
+        They are called in its title.
 
     Raises
     ------
@@ -65,7 +69,7 @@ def plot_rate_maps(maps: RateMaps, statistics: pd.DataFrame, count: int = 40) ->
         ylim=(low[1] + shifts[1][-1] - 0.03 * inch, high[1] + title * inch),
         aspect="equal",
     )
-    drawn = f"{len(axes.images)} of {len(maps)} place cells: peak rate and spatial information"
+    drawn = f"{len(axes.images)} of {len(maps)} {what}: peak rate and spatial information"
     title_sheet(figure, drawn, statistics["passing"])
     colour_bar(axes, axes.images[0], "rate (fraction of peak)")
     return figure

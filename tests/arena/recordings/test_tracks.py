@@ -221,7 +221,7 @@ def test_each_lost_sample_is_counted_once(tmp_path: Path) -> None:
         ({"x": "nose.x", "y": "nose.z", "rate": 25}, r"no column nose\.z; it has frame, nose\.x"),
         ({"x": "nose.x", "y": "nose.y", "rate": 25, "least_likelihood": 0.5}, "no likelihood of x and y"),
         ({"bodypart": "nose", "rate": 25, "least_likelihood": 1.0}, r"0 positions.*\(600 unlikely\)"),
-        ({"bodypart": "nose", "rate": 25, "track": "a"}, "no column track"),
+        ({"bodypart": "nose", "rate": 25, "individual": "a"}, "no column track"),
     ],
 )
 def test_what_to_pass_is_told(deeplabcut: Path, options: dict[str, object], said: str) -> None:
@@ -237,15 +237,15 @@ def test_sleap(tmp_path: Path) -> None:
         ]
     del rows[9]
     path = write(tmp_path, "\n".join(rows))
-    with pytest.raises(ArenaError, match="several tracks, track_0, track_1; choose one: track='track_0'"):
+    with pytest.raises(ArenaError, match="track_0, track_1; choose one: individual='track_0'"):
         read_track(path, rate=20)
     with pytest.raises(ArenaError, match="no track 'rat'; it has track_0, track_1"):
-        read_track(path, rate=20, track="rat")
-    found = read_track(path, rate=20, track="track_1", least_likelihood=0.5)
+        read_track(path, rate=20, individual="rat")
+    found = read_track(path, rate=20, individual="track_1", least_likelihood=0.5)
     np.testing.assert_allclose(found.times, np.arange(40) / 20)
     np.testing.assert_array_equal(found.positions[5:, 0], np.arange(15, 50))
     assert np.flatnonzero(np.isnan(found.positions[:, 0])).tolist() == [3]
-    assert len(read_track(path, rate=20, track="track_0").times) == 39
+    assert len(read_track(path, rate=20, individual="track_0").times) == 39
 
 
 @pytest.mark.parametrize("counted", [np.arange(600), np.arange(600) * 40])

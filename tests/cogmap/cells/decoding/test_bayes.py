@@ -7,7 +7,7 @@ import xarray as xr
 from neurospatial.decoding.likelihood import log_poisson_likelihood
 from scipy import special, stats
 
-from cogmap.cells.decoding.bayes import poisson_posterior
+from cogmap.cells.decoding.bayes import joint_posterior, poisson_posterior
 from cogmap.cells.decoding.decoders import likeliest
 from cogmap.cells.rates.bins import heading_centres
 from cogmap.cells.rates.maps import rate_maps
@@ -108,3 +108,38 @@ def test_bad_input_is_refused(patterns: np.ndarray, spikes: np.ndarray) -> None:
     for prior in (np.zeros(11), -np.ones(11)):
         with pytest.raises(CogmapError, match="prior is negative or nowhere positive"):
             poisson_posterior(spikes, patterns, prior=prior)
+
+
+def test_place_and_direction_together_are_every_pair_of_them_added_up() -> None:
+    rng = np.random.default_rng(0)
+    rates, gains = rng.gamma(1, 8, (20, 15)), rng.gamma(2, 0.5, (20, 12))
+    spikes = rng.poisson(2, (50, 20))
+    pairs = np.maximum(rates, 1e-3)[:, :, None] * np.maximum(gains, 1e-3)[:, None, :]
+    every = poisson_posterior(spikes, pairs.reshape(20, -1), seconds=0.3, faintest=1e-9).reshape(50, 15, 12)
+    found = joint_posterior(spikes, rates, gains, seconds=0.3)
+    np.testing.assert_allclose(found.place, every.sum(axis=2), rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(found.heading, every.sum(axis=1), rtol=1e-9, atol=1e-15)
+
+
+def test_cells_without_a_direction_tell_of_places_as_ever() -> None:
+    rng = np.random.default_rng(1)
+    rates, spikes = rng.gamma(1, 8, (20, 15)), rng.poisson(2, (50, 20))
+    found = joint_posterior(spikes, rates, np.ones((20, 12)), seconds=0.5)
+    np.testing.assert_allclose(found.place, poisson_posterior(spikes, rates, seconds=0.5), rtol=1e-9)
+    np.testing.assert_allclose(found.heading, 1 / 12)
+
+
+def test_many_fast_cells_do_not_overflow() -> None:
+    rng = np.random.default_rng(2)
+    rates, gains = rng.gamma(1, 40, (1000, 30)), rng.gamma(2, 0.5, (1000, 12))
+    true = rng.integers(30, size=40), rng.integers(12, size=40)
+    found = joint_posterior(rng.poisson(rates[:, true[0]].T * gains[:, true[1]].T), rates, gains, seconds=1.0)
+    np.testing.assert_array_equal(found.place.argmax(axis=1), true[0])
+    np.testing.assert_array_equal(found.heading.argmax(axis=1), true[1])
+
+
+def test_what_cannot_be_decoded_together() -> None:
+    with pytest.raises(CogmapError, match="gains is not finite"):
+        joint_posterior(np.ones((2, 3)), np.ones((3, 5)), np.full((3, 12), np.nan))
+    with pytest.raises(CogmapError, match="never negative"):
+        joint_posterior(-np.ones((2, 3)), np.ones((3, 5)), np.ones((3, 12)))
