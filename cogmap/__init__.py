@@ -7,7 +7,12 @@ if TYPE_CHECKING:
     from cogmap import cells, evaluation, features, graph, navigation, plots, shape, testing
     from cogmap.control import MotorModel, PostureReacher, Reacher
     from cogmap.coordinates import GeneralisedCoordinates
-    from cogmap.errors import CogmapError, UnlikeArithmeticWarning, UntrustedMapWarning
+    from cogmap.errors import (
+        CogmapError,
+        SeparatePiecesWarning,
+        UnlikeArithmeticWarning,
+        UntrustedMapWarning,
+    )
     from cogmap.evaluation.scoring import score
     from cogmap.features import BagOfWords
     from cogmap.imagination import Imagination
@@ -33,6 +38,7 @@ __all__ = [
     "Plan",
     "PostureReacher",
     "Reacher",
+    "SeparatePiecesWarning",
     "UnlikeArithmeticWarning",
     "UntrustedMapWarning",
     "VisualRoadmap",
@@ -52,7 +58,7 @@ __all__ = [
 _HOMES = {
     "control": ("MotorModel", "PostureReacher", "Reacher"),
     "coordinates": ("GeneralisedCoordinates",),
-    "errors": ("CogmapError", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
+    "errors": ("CogmapError", "SeparatePiecesWarning", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
     "evaluation.scoring": ("score",),
     "features": ("BagOfWords",),
     "imagination": ("Imagination",),

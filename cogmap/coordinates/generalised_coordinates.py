@@ -20,7 +20,7 @@ from cogmap.coordinates.relaxation import read_between, relaxed
 from cogmap.coordinates.view_code import Eye, ViewCode
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import neighbour_graph
-from cogmap.inputs import check_views, checked_count
+from cogmap.inputs import checked_count, checked_views
 from cogmap.map.even_memory import EvenMemory
 from cogmap.map.storage import read_state, write_state
 from cogmap.shape.agreement import unless_lower_is_unresolved
@@ -110,7 +110,7 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
     def fit(self, views: Any, y: object = None) -> GeneralisedCoordinates:
         """Find degrees of freedom, loops and coordinates of views, (views, height, width, 3) uint8."""
         del y
-        check_views(views)
+        views = checked_views(views)
         if views.shape[0] < FEWEST:
             raise CogmapError(f"{views.shape[0]} views are too few to show a shape; give at least {FEWEST}")
         self._code = ViewCode(self.components, eye=self.eye, seed=self.seed).fit(views)

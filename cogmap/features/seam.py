@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from cogmap.inputs import check_views
+from cogmap.inputs import checked_views
 
 LOOKED_AT = 1000
 """Views by which it is told; spread evenly over those that are given."""
@@ -29,7 +29,7 @@ def wraps_around(views: Any) -> bool:
     CogmapError
         For views that are not uint8 images.
     """
-    check_views(views)
+    views = checked_views(views)
     chosen = np.unique(np.linspace(0, views.shape[0] - 1, min(LOOKED_AT, views.shape[0])).astype(int))
     deviation = np.stack([np.asarray(views[int(view)], np.float32) for view in chosen])
     deviation -= deviation.mean(axis=0)

@@ -5,12 +5,13 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import scipy.sparse as sp
-from jaxtyping import Float, Int, Num
+from jaxtyping import Float, Int
 
 from cogmap.errors import CogmapError
+from cogmap.inputs import AnyArray, as_array, as_floats
 
-Cloud: TypeAlias = Num[np.ndarray, "_ ..."] | sp.csr_array
-"""One row per point, (points, features), as a matrix or as sparse rows."""
+Cloud: TypeAlias = AnyArray | sp.sparray | sp.spmatrix
+"""One row per point, (points, features), as whatever holds numbers or as sparse rows."""
 Checked: TypeAlias = Float[np.ndarray, "_ _"] | sp.csr_array
 """A cloud that `checked_cloud` has passed."""
 
@@ -31,19 +32,20 @@ def checked_cloud(X: Cloud) -> Checked:
     Raises
     ------
     CogmapError
-        When X has not two axes, no features, or a value that is not finite.
+        When X holds no numbers, has not two axes, no features, or a value that is not finite.
     """
+    X = sp.csr_array(X) if sp.issparse(X) else as_array("the cloud", X)
     if X.ndim != 2 or X.shape[1] == 0:
         raise CogmapError(f"the cloud has shape {X.shape}; expected one row per point, (points, features)")
     if not np.isfinite(X.data if sp.issparse(X) else X).all():
         raise CogmapError("the cloud holds NaN or infinite values; remove those points first")
     if sp.issparse(X):
-        X = sp.csr_array(X)
         if not X.has_canonical_format or not X.data.all():
             X = X.copy()
             X.sum_duplicates()
             X.eliminate_zeros()
-    return X if np.issubdtype(X.dtype, np.floating) else X.astype(np.float64)
+        return X if X.dtype in (np.float32, np.float64) else X.astype(np.float64)
+    return as_floats(X)
 
 
 def distinct(X: Checked) -> Distinct:

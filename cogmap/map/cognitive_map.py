@@ -19,7 +19,7 @@ from torch import Tensor
 from tqdm import tqdm
 
 from cogmap.errors import CogmapError, UntrustedMapWarning
-from cogmap.inputs import check_views, checked_count, log_odours
+from cogmap.inputs import checked_count, checked_views, log_odours
 from cogmap.map.activity import Activity
 from cogmap.map.device import checked_device
 from cogmap.map.diagnosis import Counted, Diagnosis, Verdict, topology_verdict
@@ -125,7 +125,7 @@ class CognitiveMap:
         progress
             Whether to show a bar on stderr.
         """
-        check_views(views)
+        views = checked_views(views)
         logs = log_odours(odours, views=views.shape[0])
         if views.shape[0] < checked_count("charts", self.charts):
             raise CogmapError(
@@ -175,7 +175,7 @@ class CognitiveMap:
             Whether these views do not follow the last ones, as where another walk begins.
         """
         fresh = not hasattr(self, "_network")
-        check_views(views, None if fresh else self.view_shape_)
+        views = checked_views(views, None if fresh else self.view_shape_)
         logs = log_odours(odours, views=views.shape[0], odorants=None if fresh else self.odorants_)
         if fresh:
             self._begin(tuple(views.shape[1:]), logs.shape[1], epoch=checked_count("epoch", self.epoch))
@@ -248,7 +248,7 @@ class CognitiveMap:
             if odours is None:
                 raise CogmapError("give views, odours for a look in the dark, or both")
             return self._sniff(log_odours(odours, odorants=self.odorants_))
-        check_views(views, self.view_shape_)
+        views = checked_views(views, self.view_shape_)
         logs = None
         if odours is not None:
             logs = self._here(log_odours(odours, views=views.shape[0], odorants=self.odorants_))
@@ -304,7 +304,7 @@ class CognitiveMap:
     def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
         """Give the principal components of views, the space of the view manifold, float32."""
         network = self._grown
-        check_views(views, self.view_shape_)
+        views = checked_views(views, self.view_shape_)
         with one_thread(self._device):
             return torch.cat([network.code(strip) for _, strip in self._strips(views)]).cpu().numpy()
 

@@ -11,8 +11,9 @@ from sklearn.preprocessing import normalize
 
 from cogmap.errors import CogmapError
 from cogmap.graph.knn import Metric
-from cogmap.graph.neighbour_graph import Components, components, neighbour_graph
+from cogmap.graph.neighbour_graph import Components, components, neighbour_graph, warn_of_pieces
 from cogmap.graph.points import Checked, Cloud, checked_cloud
+from cogmap.inputs import as_array
 
 
 @dataclass(eq=False)
@@ -89,19 +90,23 @@ class VisualRoadmap:
 
     def nearest(self, view: Cloud) -> int:
         """Give the index of the remembered view nearest to one given by its features."""
-        test = self._prepared(view if sp.issparse(view) or view.ndim != 1 else view[None])
+        row = view if sp.issparse(view) else np.atleast_2d(as_array("the view", view))
+        test = self._prepared(row)
         train, squares = self._train
         if test.shape != (1, train.shape[1]):
             raise CogmapError(
-                f"the view has features of shape {view.shape}; give one row of {train.shape[1]} features"
+                f"the view has features of shape {row.shape}; give one row of {train.shape[1]} features"
             )
         products = train @ (test.toarray() if sp.issparse(test) else test)[0]
         return int(np.argmin(squares - 2 * products))
 
+    def __len__(self) -> int:
+        return len(self._train[1])
+
     @cached_property
     def graph(self) -> sp.csr_array:
         """Symmetric costs between neighbours."""
-        if self.features.shape[0] == 1:
+        if len(self) == 1:
             return sp.csr_array((1, 1))
         graph = neighbour_graph(self.features, self.neighbours, metric=self.metric, one_sided=self.one_sided)
         graph.data **= self.power
@@ -109,8 +114,10 @@ class VisualRoadmap:
 
     @cached_property
     def pieces(self) -> Components:
-        """The connected pieces of the graph."""
-        return components(self.graph)
+        """The connected pieces of the graph; a `cogmap.SeparatePiecesWarning` says when it has several."""
+        pieces = components(self.graph)
+        warn_of_pieces(pieces, "no way leads from one to another")
+        return pieces
 
     @cached_property
     def _train(self) -> tuple[Checked, Float[np.ndarray, "views"]]:

@@ -8,7 +8,7 @@ from sklearn.decomposition import KernelPCA
 from sklearn.manifold import Isomap
 
 from cogmap.graph.points import Cloud
-from cogmap.inputs import check_choice
+from cogmap.inputs import Whole, check_choice
 from cogmap.shape.isomap import LandmarkIsomap
 
 Method = Literal["landmark_isomap", "isomap", "kernel_pca"]
@@ -27,7 +27,7 @@ class Embedding(Protocol):
         ...
 
 
-def embedding(method: Method, components: int = 4, *, neighbours: int = 15, seed: int = 0) -> Embedding:
+def embedding(method: Method, components: Whole = 4, *, neighbours: Whole = 15, seed: Whole = 0) -> Embedding:
     """Choose a way of embedding bags of words, whose rows have length one.
 
     All compare directions: the Euclidean distance of such rows is the chord that `LandmarkIsomap` measures,

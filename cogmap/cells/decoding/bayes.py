@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float, Real
+from jaxtyping import Float
 from scipy import special
 
 from cogmap.cells.rates.spikes import SECONDS, check_seconds
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_array, check_samples
+from cogmap.inputs import AnyArray, checked_array, checked_rates
 
 
 def poisson_posterior(
-    spikes: Real[np.ndarray, "views cells"],
-    patterns: Float[np.ndarray, "cells bins"],
+    spikes: AnyArray,
+    patterns: AnyArray,
     *,
     seconds: float = SECONDS,
-    prior: Float[np.ndarray, "bins"] | None = None,
+    prior: AnyArray | None = None,
     faintest: float = 1e-3,
 ) -> Float[np.ndarray, "views bins"]:
     """Probability of each bin given the spikes of independent Poisson cells.
@@ -48,13 +48,13 @@ def poisson_posterior(
     Zhang, Ginzburg, McNaughton & Sejnowski 1998, Interpreting neuronal population activity by reconstruction,
     J. Neurophysiol. 79.
     """
-    check_samples(spikes)
-    check_array("patterns", patterns, (spikes.shape[1], None))
+    spikes = checked_rates(spikes)
+    patterns = checked_array("patterns", patterns, (spikes.shape[1], None))
     check_seconds(seconds)
     rates = np.maximum(patterns.astype(float), faintest)
     likelihood = spikes.astype(float) @ np.log(rates) - seconds * rates.sum(axis=0)
     if prior is not None:
-        check_array("prior", prior, (patterns.shape[1],))
+        prior = checked_array("prior", prior, (patterns.shape[1],))
         if prior.min() < 0 or prior.max() <= 0:
             raise CogmapError("prior is negative or nowhere positive; give a probability to every bin")
         likelihood += special.xlogy(1, prior)
