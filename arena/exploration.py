@@ -84,7 +84,7 @@ def explore(
     views = None if views is None else checked_whole("views", views, 1)
     parts = {"camera": camera, "nose": nose, "body": body}
     told = {"arena": arena.to_toml(), "seed": seed, **_described(parts)}
-    path = None if out is None else user_path(out, ArenaError)
+    path = None if out is None else user_path(out)
     if not isinstance(motion, Motion):
         dt = DT if dt is None else float(dt)
         start = None if start is None else tuple(np.asarray(start, float).tolist())

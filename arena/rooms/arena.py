@@ -110,7 +110,7 @@ class Arena(FrozenModel):
     @classmethod
     def load(cls, source: str | Path) -> Arena:
         """Load an arena by the name of a room in the gallery or by the path of a TOML file."""
-        path = user_path(source, ArenaError)
+        path = user_path(source)
         if path.suffix != ".toml":
             file = resources.files("arena") / "gallery" / f"{source}.toml"
             if not file.is_file():

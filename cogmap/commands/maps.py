@@ -9,7 +9,7 @@ from cyclopts import Parameter
 
 from arena import Recording
 from arena.atomic import check_absent
-from cogmap.commands.common import Json, Seed, tell
+from cogmap.commands.common import Json, Seed, UserPath, tell
 from cogmap.errors import CogmapError
 from cogmap.evaluation.populations import usual_charts
 from cogmap.evaluation.scoring import score
@@ -18,10 +18,10 @@ from cogmap.map.cognitive_map import CognitiveMap
 
 
 def _learn(
-    recording: Path,
+    recording: UserPath,
     /,
     *,
-    out: Path,
+    out: UserPath,
     charts: int | None = None,
     refine: Annotated[bool, Parameter(negative="")] = False,
     seed: Seed = 0,
@@ -55,7 +55,7 @@ def _learn(
     tell(about, as_json=as_json)
 
 
-def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False) -> None:
+def _score(cmap: UserPath, recording: UserPath, /, *, train: UserPath, as_json: Json = False) -> None:
     """Score a map on a fresh recording against the true poses.
 
     Example: `cogmap score map fresh.zarr --train walk.zarr --json`.
@@ -76,7 +76,9 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
     tell({**_verdict(grown), **figures}, as_json=as_json)
 
 
-def _export(recording: Path, cmap: Path, /, *, out: Path, seed: Seed = 0, as_json: Json = False) -> None:
+def _export(
+    recording: UserPath, cmap: UserPath, /, *, out: UserPath, seed: Seed = 0, as_json: Json = False
+) -> None:
     """Write a recording with the rates and spikes of a map's cells as NWB; needs `pip install 'cogmap[nwb]'`.
 
     Example: `cogmap export walk.zarr map --out walk.nwb`.

@@ -186,7 +186,7 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
             "reason": self.reason_,
             "betti": {name: value for name, value in asdict(self.betti_).items() if name != "bars"},
         }
-        write_state(Path(path), weights, self.get_params(), learnt, kind="coordinates")
+        write_state(path, weights, self.get_params(), learnt, kind="coordinates")
 
     @classmethod
     def load(cls, path: str | Path) -> GeneralisedCoordinates:
@@ -197,7 +197,7 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
         CogmapError
             When it is missing, damaged or of another version.
         """
-        weights, settings, learnt = read_state(Path(path), kind="coordinates")
+        weights, settings, learnt = read_state(path, kind="coordinates")
         try:
             loaded = cls(**settings)
             arrays = {name: weight.numpy() for name, weight in weights.items() if name[:5] != "code."}

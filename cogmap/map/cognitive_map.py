@@ -14,12 +14,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import torch
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 from torch import Tensor
 from tqdm import tqdm
 
 from cogmap.errors import CogmapError, UntrustedMapWarning
-from cogmap.inputs import checked_count, checked_views, log_odours
+from cogmap.inputs import (
+    AnyArray,
+    Whole,
+    check_choice,
+    checked_count,
+    checked_number,
+    checked_views,
+    log_odours,
+)
 from cogmap.map.activity import Activity
 from cogmap.map.device import checked_device
 from cogmap.map.diagnosis import Counted, Diagnosis, Verdict, topology_verdict
@@ -42,7 +49,7 @@ RELAXED = "relaxed_places."
 """How what `refine` has learnt is called among the weights of a saved map."""
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class CognitiveMap:
     """A map of a place, learnt from sight and smell alone.
 
@@ -99,19 +106,55 @@ class CognitiveMap:
         For views or odours of the wrong shape, type or range, counts below 1, or a device that is not there.
     """
 
-    charts: int = 3000
-    components: int = 60
+    charts: Whole = 3000
+    components: Whole = 60
     _: KW_ONLY
-    most_charts: int | None = None
-    place_cells: int = 150
-    heading_cells: int = 60
-    smell: float = 0.5
-    smell_first: bool = False
-    epoch: int = 17_000
-    seed: int = 0
+    most_charts: Whole | None = None
+    place_cells: Whole = 150
+    heading_cells: Whole = 60
+    smell: float | Whole | np.floating = 0.5  # type: ignore[type-arg]
+    smell_first: bool | np.bool = False
+    epoch: Whole = 17_000
+    seed: Whole = 0
     device: str = "cpu"
 
-    def fit(self, views: Any, odours: ArrayLike | None, *, progress: bool = False) -> CognitiveMap:
+    def __repr__(self) -> str:
+        told = ((field.name, getattr(self, field.name), field.default) for field in fields(self))
+        blank = (
+            f"CognitiveMap({', '.join(f'{name}={value!r}' for name, value, usual in told if value != usual)})"
+        )
+        if not hasattr(self, "_network"):
+            return blank
+        height, width, _ = self.view_shape_
+        verdict = self._network.unfinished or self.reason_
+        return (
+            f"<{blank} that has learnt from views of {height}×{width} pixels and {self.odorants_} odorants: "
+            f"{verdict or 'trusted'}>"
+        )
+
+    def get_params(self, *, deep: bool = True) -> dict[str, Any]:
+        """Give the parameters by name; `sklearn.base.clone` makes a map of them that has learnt nothing."""
+        del deep  # none of them has parameters of its own
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    def set_params(self, **params: Any) -> CognitiveMap:
+        """Change parameters of a map that has learnt nothing yet.
+
+        Raises
+        ------
+        CogmapError
+            For a parameter that there is not, or a map that has learnt with others.
+        """
+        known = self.get_params()
+        for name in params:
+            check_choice("parameter", name, tuple(known))
+        if params and hasattr(self, "_network"):
+            raise CogmapError("this map has learnt with other parameters; change those of a blank one")
+        for name, value in params.items():
+            setattr(self, name, value)
+        return self
+
+    def fit(self, views: Any, odours: AnyArray | None, *, progress: bool = False) -> CognitiveMap:
         """Learn a map from scratch, as epochs of `partial_fit` over the views.
 
         Their order is random in every epoch but those of stages that learn from it, as the metric map does.
@@ -119,7 +162,8 @@ class CognitiveMap:
         Parameters
         ----------
         views
-            (views, height, width, 3) uint8; an array, or anything lazy whose slices are arrays.
+            (views, height, width, 3) uint8; an array, a tensor, a list of images, or anything lazy whose
+            slices are arrays.
         odours
             (views, odorants) concentrations > 0.
         progress
@@ -161,7 +205,7 @@ class CognitiveMap:
                 bar.refresh()
         return self
 
-    def partial_fit(self, views: Any, odours: ArrayLike | None, *, jump: bool = False) -> CognitiveMap:
+    def partial_fit(self, views: Any, odours: AnyArray | None, *, jump: bool = False) -> CognitiveMap:
         """Learn from the next views of a stream.
 
         Time and memory per view do not depend on how many came before. See `neurons.network.Network` for what
@@ -233,7 +277,7 @@ class CognitiveMap:
             merge(self._grown, other._grown)
         return self
 
-    def perceive(self, views: Any = None, *, odours: ArrayLike | None = None) -> Activity:
+    def perceive(self, views: Any = None, *, odours: AnyArray | None = None) -> Activity:
         """Let the map look at views, smell odours in the dark, which tells place only, or both at once.
 
         With both, smell picks among the charts that look alike; what they recall is told from sight as ever.
@@ -388,12 +432,13 @@ class CognitiveMap:
             "charts": len(network.charts),
             "tangents": network.charts.dimensions,
         }
-        settings = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "device"}
+        settings = self.get_params()
+        del settings["device"]
         weights = network.state_dict()
         if self.relaxed_places_ is not None:
             state = self.relaxed_places_.state()
             weights |= {RELAXED + name: torch.from_numpy(array) for name, array in state.items()}
-        write_state(Path(path), weights, settings, learnt)
+        write_state(path, weights, settings, learnt)
 
     @classmethod
     def load(cls, path: str | Path, *, device: str = "cpu") -> CognitiveMap:
@@ -404,7 +449,7 @@ class CognitiveMap:
         CogmapError
             When it is missing, damaged or of another version, or the device is not there.
         """
-        weights, settings, learnt = read_state(Path(path))
+        weights, settings, learnt = read_state(path)
         try:
             loaded = cls(**settings, device=device)
             loaded._begin(
@@ -431,8 +476,6 @@ class CognitiveMap:
     def _begin(self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, **grown: int) -> None:
         first = checked_count("charts", self.charts)
         most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
-        if not 0 <= self.smell < np.inf:
-            raise CogmapError(f"smell is {self.smell!r}; give a number of at least 0, how much it counts")
         self._device = checked_device(self.device)
         self._retina = Retina(*view_shape[:2]).to(self._device)
         self.view_shape_, self.odorants_ = view_shape, odorants
@@ -447,7 +490,7 @@ class CognitiveMap:
                 components=checked_count("components", self.components, 4),
                 place_cells=checked_count("place_cells", self.place_cells),
                 heading_cells=checked_count("heading_cells", self.heading_cells),
-                smell=self.smell,
+                smell=checked_number("smell", self.smell),
                 epoch=epoch,
                 stages=SMELL_FIRST if self.smell_first else STAGES,
                 # drawn on the processor: the same initial weights on every device

@@ -5,11 +5,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
 from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
-from cogmap.atomic import atomic_write
+from cogmap.atomic import atomic_write, user_path
 from cogmap.errors import CogmapError
 
 Kind = Literal["map", "memory", "motor", "coordinates"]
@@ -18,7 +19,7 @@ WEIGHTS = "weights.safetensors"
 
 
 def write_state(
-    path: Path,
+    path: str | Path,
     weights: Mapping[str, Tensor],
     settings: Mapping[str, Any],
     learnt: Mapping[str, Any],
@@ -27,14 +28,25 @@ def write_state(
 ) -> None:
     """Fill a new folder under another name and give it the right one at the end."""
     described = {"version": VERSIONS[kind], "settings": dict(settings), "learnt": dict(learnt)}
-    with atomic_write(path, overwrite=False) as folder:
+    with atomic_write(user_path(path), overwrite=False) as folder:
         folder.mkdir()
         save_file({name: weight.cpu().contiguous() for name, weight in weights.items()}, folder / WEIGHTS)
-        (folder / f"{kind}.json").write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
+        text = json.dumps(described, indent=2, default=_plain)
+        (folder / f"{kind}.json").write_text(text + "\n", encoding="utf-8")
 
 
-def read_state(path: Path, *, kind: Kind = "map") -> tuple[dict[str, Tensor], dict[str, Any], dict[str, Any]]:
+def _plain(number: Any) -> Any:
+    """Give what JSON does not know by itself, a number of numpy's, as Python's."""
+    if not isinstance(number, np.generic):
+        raise CogmapError(f"{number!r} cannot be saved; give settings that are numbers, words or None")
+    return number.item()
+
+
+def read_state(
+    path: str | Path, *, kind: Kind = "map"
+) -> tuple[dict[str, Tensor], dict[str, Any], dict[str, Any]]:
     """Read weights, settings and what was learnt about the input."""
+    path = user_path(path)
     try:
         described = json.loads((path / f"{kind}.json").read_text(encoding="utf-8"))
         weights = load_file(path / WEIGHTS)

@@ -104,7 +104,7 @@ WRONG = [
     (toml(platform=[[[0.0, 0.0], [1.0, 1.0]]]), "platform"),
     (toml(platform=[[[0, 0], [1, 1], [1, 0], [0, 1]]]), "platform.0: the polygon crosses itself"),
     (toml(platform=[[[0, 0], [1, 1], [2, 2]]]), "platform.0: the polygon crosses itself or is flat"),
-    (toml(platform=[[[0, 0], [1, 0], [1, 1], [1, 1], [0, 1]]]), "platform.0: corner 2 and the next are the same"),
+    (toml(platform=[[[0, 0], [1, 0], [1, 1], [1, 1]]]), "platform.0: corner 2 and the next are the same"),
     (toml(walls=None), "walls"),
     (toml(walls=[]), "nothing to see"),
     (toml(walls=wall(start=[1.0, 1.0])), "zero length"),
@@ -195,13 +195,9 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 
 
 def test_outlines_may_repeat_their_first_corner() -> None:
-    corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]
+    corners, made_of = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]], ["brick", "oak", "oak"]
     one, other = (
-        Arena.parse(
-            toml(
-                platform=[ring], blocks=[{"corners": ring, "material": ["brick", "oak", "oak"]}], sources=None
-            )
-        )
+        Arena.parse(toml(platform=[ring], blocks=[{"corners": ring, "material": made_of}], sources=None))
         for ring in (corners, [*corners, corners[0]])
     )
     assert one == other
@@ -224,9 +220,7 @@ def test_numbers_may_be_numpys() -> None:
     room = Arena.create(
         name="numpy",
         platform=[np.array(LITTLE["platform"][0])],
-        walls=[
-            {"start": np.zeros(2), "end": np.float32([1, 0]), "height": np.float32(1), "material": "brick"}
-        ],
+        walls=[{"start": np.zeros(2), "end": np.float32([1, 0]), "material": "brick"}],
         floor=np.array([1, 2, 3], np.uint8),
     )
     assert Arena.parse(room.to_toml()) == room

@@ -271,7 +271,7 @@ def test_what_the_grid_cannot_resolve_is_refused(wrong: dict[str, Any], message:
 def test_solids_that_coincide_part_the_odour_as_one_does() -> None:
     angle = np.arange(32) * np.pi / 16
     outline = 0.4 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    xy = np.random.default_rng(0).uniform(-1, 1, (50, 2)) + [1.5, 0]
+    xy = np.random.default_rng(0).uniform([0.5, -1], [2.5, 1], (50, 2))
     one, many = (field(solids=[outline] * count, cell=0.2).concentration(xy) for count in (1, 300))
     np.testing.assert_array_equal(one, many)
 
