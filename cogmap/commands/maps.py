@@ -1,6 +1,7 @@
 """Commands about maps: learn one, score it, write down what its cells do."""
 
 import sys
+import warnings
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,7 +11,7 @@ from cyclopts import Parameter
 from arena import Recording
 from arena.atomic import check_absent
 from cogmap.commands.common import Json, Seed, UserPath, tell
-from cogmap.errors import CogmapError
+from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.evaluation.populations import usual_charts
 from cogmap.evaluation.scoring import score
 from cogmap.export import export_nwb
@@ -71,7 +72,11 @@ def _score(cmap: UserPath, recording: UserPath, /, *, train: UserPath, as_json: 
     """
     grown = CognitiveMap.load(cmap)
     fresh, walk = _with_truth(recording), _with_truth(train)
-    seen, known = grown.perceive(fresh.views), grown.perceive(walk.views)
+    if not grown.trusted_:
+        sys.stderr.write(f"cogmap: this map is not to be trusted: {grown.reason_}\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UntrustedMapWarning)  # it is said
+        seen, known = grown.perceive(fresh.views), grown.perceive(walk.views)
     figures = score(seen, np.asarray(fresh.poses), train=(known, np.asarray(walk.poses)))
     tell({**_verdict(grown), **figures}, as_json=as_json)
 

@@ -120,9 +120,8 @@ class CognitiveMap:
 
     def __repr__(self) -> str:
         told = ((field.name, getattr(self, field.name), field.default) for field in fields(self))
-        blank = (
-            f"CognitiveMap({', '.join(f'{name}={value!r}' for name, value, usual in told if value != usual)})"
-        )
+        unusual = (f"{name}={value!r}" for name, value, usual in told if value != usual)
+        blank = f"CognitiveMap({', '.join(unusual)})"
         if not hasattr(self, "_network"):
             return blank
         height, width, _ = self.view_shape_
@@ -476,6 +475,9 @@ class CognitiveMap:
     def _begin(self, view_shape: tuple[int, ...], odorants: int, *, epoch: int, **grown: int) -> None:
         first = checked_count("charts", self.charts)
         most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
+        checked_count("epoch", self.epoch)
+        if not isinstance(self.smell_first, bool | np.bool):
+            raise CogmapError(f"smell_first is {self.smell_first!r}; give True or False")
         self._device = checked_device(self.device)
         self._retina = Retina(*view_shape[:2]).to(self._device)
         self.view_shape_, self.odorants_ = view_shape, odorants
