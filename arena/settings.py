@@ -13,7 +13,7 @@ from arena.errors import ArenaError
 Positive = Annotated[float, Field(ge=0.01, le=100)]
 Spread = Annotated[float, Field(ge=0, le=100)]
 Share = Annotated[float, Field(ge=0, le=1)]
-Whole: TypeAlias = int | np.integer  # type: ignore[type-arg]  # beartype knows no generic ones
+Whole: TypeAlias = int | np.integer
 """A whole number, Python's or numpy's."""
 AnyArray: TypeAlias = ArrayLike | Sequence[Any]
 """Numbers as people have them: arrays, nested lists, DataFrames, Series, tensors, what has `__array__`."""

@@ -12,7 +12,7 @@ from cogmap.errors import CogmapError
 
 AnyArray: TypeAlias = ArrayLike | Sequence[Any]
 """Numbers as people have them: arrays, nested lists, DataFrames, Series, tensors, what has `__array__`."""
-Whole: TypeAlias = int | np.integer  # type: ignore[type-arg]  # beartype knows no generic ones
+Whole: TypeAlias = int | np.integer
 """A whole number, Python's or numpy's."""
 MOST_TURN = 4 * np.pi
 """Headings beyond two turns either way (rad) may be degrees, or unwrapped: nobody can tell which."""
@@ -142,7 +142,7 @@ def _unwrapped(values: Any) -> np.ndarray:
     if hasattr(values, "detach"):  # a tensor, which may be on another device or remember where it came from
         values = values.detach().cpu()
     if isinstance(values, np.ma.MaskedArray):
-        return np.asarray(values.astype(float).filled(np.nan))
+        return np.ma.filled(values.astype(float), np.nan)
     array = np.asarray(values)
     if array.dtype == object and hasattr(values, "to_numpy"):  # of pandas, with missing values of its own
         array = values.to_numpy(dtype=float, na_value=np.nan)

@@ -11,7 +11,7 @@ from sklearn.preprocessing import normalize
 from threadpoolctl import get_cached_controller
 
 from cogmap.errors import CogmapError
-from cogmap.graph.points import Checked, Cloud, checked_cloud
+from cogmap.graph.points import AnyCloud, Checked, checked_cloud
 from cogmap.graph.top_k import offer
 from cogmap.inputs import Whole, check_choice, checked_count
 
@@ -39,10 +39,10 @@ class Nearest(NamedTuple):
 
 
 def nearest_points(
-    cloud: Cloud,
+    cloud: AnyCloud,
     neighbours: Whole,
     *,
-    queries: Cloud | None = None,
+    queries: AnyCloud | None = None,
     metric: Metric = "euclidean",
     exact: int = 50_000,
 ) -> Nearest:

@@ -11,8 +11,8 @@ from scipy.sparse.csgraph import connected_components
 
 from cogmap.errors import CogmapError, SeparatePiecesWarning
 from cogmap.graph.knn import Metric, nearest_points
-from cogmap.graph.points import Cloud, checked_cloud, distinct
-from cogmap.inputs import Whole, as_array
+from cogmap.graph.points import AnyCloud, as_rows, checked_cloud, distinct
+from cogmap.inputs import Whole
 
 SMALLEST = float(np.finfo(np.float64).tiny)
 """Length of an edge between equal points: adds nothing to a path, yet is an edge, where a zero is none."""
@@ -32,7 +32,7 @@ class Components(NamedTuple):
 
 
 def neighbour_graph(
-    X: Cloud, neighbours: Whole = 15, *, metric: Metric = "euclidean", one_sided: int | None = None
+    X: AnyCloud, neighbours: Whole = 15, *, metric: Metric = "euclidean", one_sided: int | None = None
 ) -> sp.csr_array:
     """Join every point to its nearest neighbours by edges as long as they are apart.
 
@@ -63,12 +63,12 @@ def neighbour_graph(
     CogmapError
         When X is not a finite matrix or has no more distinct points than `neighbours`.
     """
-    (graph,) = neighbour_graphs(X, (neighbours,), metric=metric, one_sided=one_sided)
+    (graph,) = neighbour_graphs(X, (int(neighbours),), metric=metric, one_sided=one_sided)
     return graph
 
 
 def neighbour_graphs(
-    X: Cloud, counts: Sequence[int], *, metric: Metric = "euclidean", one_sided: int | None = None
+    X: AnyCloud, counts: Sequence[int], *, metric: Metric = "euclidean", one_sided: int | None = None
 ) -> list[sp.csr_array]:
     """Make the `neighbour_graph` of each of several numbers of neighbours, for which it searches but once."""
     fewest, most = min(counts), max(counts)
@@ -170,7 +170,7 @@ def warn_of_pieces(pieces: Components, so: str) -> None:
         )
 
 
-def checked_graph(graph: Cloud) -> sp.csr_array:
+def checked_graph(given: AnyCloud) -> sp.csr_array:
     """Pass a symmetric graph of positive lengths through, without the zeros it may store.
 
     Lengths there and back that differ by rounding become their mean.
@@ -180,7 +180,7 @@ def checked_graph(graph: Cloud) -> sp.csr_array:
     CogmapError
         When it is not square, not symmetric, or has a length that is not positive and finite.
     """
-    graph = sp.csr_array(graph if sp.issparse(graph) else as_array("the graph", graph)).astype(np.float64)
+    graph = sp.csr_array(as_rows("the graph", given)).astype(np.float64)
     graph.eliminate_zeros()
     if graph.shape[0] != graph.shape[1]:
         raise CogmapError(f"the graph has shape {graph.shape}; expected a square, (points, points)")

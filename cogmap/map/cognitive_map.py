@@ -112,7 +112,7 @@ class CognitiveMap:
     most_charts: Whole | None = None
     place_cells: Whole = 150
     heading_cells: Whole = 60
-    smell: float | Whole | np.floating = 0.5  # type: ignore[type-arg]
+    smell: float | Whole | np.floating = 0.5
     smell_first: bool | np.bool = False
     epoch: Whole = 17_000
     seed: Whole = 0

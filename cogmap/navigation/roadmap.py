@@ -12,8 +12,7 @@ from sklearn.preprocessing import normalize
 from cogmap.errors import CogmapError
 from cogmap.graph.knn import Metric
 from cogmap.graph.neighbour_graph import Components, components, neighbour_graph, warn_of_pieces
-from cogmap.graph.points import Checked, Cloud, checked_cloud
-from cogmap.inputs import as_array
+from cogmap.graph.points import AnyCloud, Checked, as_rows, checked_cloud
 
 
 @dataclass(eq=False)
@@ -53,14 +52,14 @@ class VisualRoadmap:
     roadmaps for path planning in high-dimensional configuration spaces.
     """
 
-    features: Cloud
+    features: AnyCloud
     _: KW_ONLY
     neighbours: int = 45
     power: float = 1.25
     metric: Metric = "euclidean"
     one_sided: int = 5
 
-    def plan(self, view_a: Cloud, view_b: Cloud) -> Int[np.ndarray, "steps"]:
+    def plan(self, view_a: AnyCloud, view_b: AnyCloud) -> Int[np.ndarray, "steps"]:
         """Give the indices of the views on the way from view a to view b, given by their features.
 
         Parameters
@@ -88,14 +87,14 @@ class VisualRoadmap:
             route.append(int(before[route[-1]]))
         return np.array(route)
 
-    def nearest(self, view: Cloud) -> int:
+    def nearest(self, view: AnyCloud) -> int:
         """Give the index of the remembered view nearest to one given by its features."""
-        row = view if sp.issparse(view) else np.atleast_2d(as_array("the view", view))
-        test = self._prepared(row)
+        row = as_rows("the view", view)
+        test = self._prepared(np.atleast_2d(row) if isinstance(row, np.ndarray) else row)
         train, squares = self._train
         if test.shape != (1, train.shape[1]):
             raise CogmapError(
-                f"the view has features of shape {row.shape}; give one row of {train.shape[1]} features"
+                f"the view has features of shape {test.shape}; give one row of {train.shape[1]} features"
             )
         products = train @ (test.toarray() if sp.issparse(test) else test)[0]
         return int(np.argmin(squares - 2 * products))
@@ -125,7 +124,7 @@ class VisualRoadmap:
         squares = train.multiply(train).sum(axis=1) if sp.issparse(train) else (train**2).sum(axis=1)
         return train, np.asarray(squares)
 
-    def _prepared(self, views: Cloud) -> Checked:
+    def _prepared(self, views: AnyCloud) -> Checked:
         checked = checked_cloud(views)
         directions: Checked = normalize(checked) if self.metric == "cosine" else checked
         return directions

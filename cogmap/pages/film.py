@@ -43,13 +43,13 @@ def write_film(views: AnyArray, out: str | Path, *, rate: float = 15.0) -> None:
     CogmapError
         For another kind of file, one that is there, and an MP4 where OpenCV has no encoder.
     """
-    views, out = checked_views(views), check_film(out)
+    frames, out = checked_views(views), check_film(out)
     with atomic_write(out, overwrite=False) as path:
         if out.suffix == ".mp4":
-            _write_mp4(views, path, rate)
+            _write_mp4(frames, path, rate)
         else:
             path.mkdir()
-            for index, view in enumerate(views):
+            for index, view in enumerate(frames):
                 cv2.imwrite(str(path / f"{index:04d}.png"), cv2.cvtColor(view, cv2.COLOR_RGB2BGR))
 
 

@@ -7,13 +7,13 @@ from scipy.sparse.linalg import cg
 
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import checked_graph
-from cogmap.graph.points import Cloud
+from cogmap.graph.points import AnyCloud
 from cogmap.inputs import AnyArray, as_array, as_floats
 from cogmap.threads import one_thread
 
 
 def height_coordinate(
-    graph: Cloud,
+    graph: AnyCloud,
     embedding: AnyArray,
     phase: AnyArray,
     *,

@@ -7,7 +7,7 @@ from jaxtyping import Float
 from sklearn.decomposition import KernelPCA
 from sklearn.manifold import Isomap
 
-from cogmap.graph.points import Cloud
+from cogmap.graph.points import AnyCloud
 from cogmap.inputs import Whole, check_choice
 from cogmap.shape.isomap import LandmarkIsomap
 
@@ -18,11 +18,11 @@ Method = Literal["landmark_isomap", "isomap", "kernel_pca"]
 class Embedding(Protocol):
     """Takes points (points, features) to coordinates (points, components)."""
 
-    def fit_transform(self, X: Cloud) -> Float[np.ndarray, "points components"]:
+    def fit_transform(self, X: AnyCloud) -> Float[np.ndarray, "points components"]:
         """Find the coordinates of a cloud."""
         ...
 
-    def transform(self, X: Cloud) -> Float[np.ndarray, "places components"]:
+    def transform(self, X: AnyCloud) -> Float[np.ndarray, "places components"]:
         """Place other points."""
         ...
 

@@ -12,8 +12,8 @@ from scipy.sparse.csgraph import connected_components
 
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import checked_graph
-from cogmap.graph.points import Cloud, checked_cloud
-from cogmap.inputs import AnyArray, Whole, as_array, check_choice
+from cogmap.graph.points import AnyCloud, checked_cloud
+from cogmap.inputs import Whole, as_array, check_choice
 from cogmap.shape import betti_thresholds, rips
 from cogmap.shape.resolution import Over, doubt
 
@@ -104,7 +104,7 @@ class _Found(NamedTuple):
 
 
 def betti(
-    X: Cloud,
+    X: AnyCloud,
     metric: Metric = "geodesic",
     *,
     max_dimension: int = 2,
@@ -264,7 +264,7 @@ def _over(found: Float[np.ndarray, "bars"], threshold: float, which: int) -> flo
 
 
 def _metric_spaces(
-    X: Cloud,
+    X: AnyCloud,
     metric: Metric,
     counts: tuple[int, ...],
     one_sided: int | None,
@@ -288,7 +288,7 @@ def _metric_spaces(
     return [*rips.geodesics(X, counts, one_sided)] if metric == "geodesic" else [rips.euclidean(X)]
 
 
-def _checked_distances(given: AnyArray) -> Float[np.ndarray, "points points"]:
+def _checked_distances(given: object) -> Float[np.ndarray, "points points"]:
     X = as_array("precomputed distances", given)
     if X.ndim != 2 or X.shape[0] != X.shape[1]:
         raise CogmapError(f"precomputed distances have shape {X.shape}; expected a square, (points, points)")
@@ -313,9 +313,9 @@ def _checked_distances(given: AnyArray) -> Float[np.ndarray, "points points"]:
             f"precomputed distances are not symmetric, there and back differ by up to {skew:g}; "
             "average X and X.T, or of an upper triangle give X + X.T"
         )
-    X = np.maximum((X + X.T) / 2, 0)
-    np.fill_diagonal(X, 0)
-    return X
+    mean: np.ndarray = np.maximum((X + X.T) / 2, 0)
+    np.fill_diagonal(mean, 0)
+    return mean
 
 
 def _check_enough(points: int) -> None:

@@ -200,7 +200,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
 
     @property
     def _n_features_out(self) -> int:
-        return self.components
+        return int(self.components)
 
     def __sklearn_tags__(self) -> Tags:
         tags = super().__sklearn_tags__()

@@ -51,8 +51,8 @@ def rayleigh_test(spikes: AnyArray, headings: AnyArray, bins: Whole | None = 36)
     headings = checked_headings(headings, len(spikes))
     weight = np.ones(len(headings))
     if bins is not None:
-        index = heading_bin(headings, bins)
-        weight = 1 / np.bincount(index, minlength=bins)[index]
+        index = heading_bin(headings, int(bins))
+        weight = 1 / np.bincount(index, minlength=int(bins))[index]
     across, along = weight * np.cos(headings), weight * np.sin(headings)
     total, x, y, square = np.stack([weight, across, along, weight**2]) @ spikes.astype(float)
     number, resultant = ratio(total**2, square), ratio(np.hypot(x, y), total)

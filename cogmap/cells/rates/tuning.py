@@ -44,6 +44,7 @@ def tuning_curves(rates: AnyArray, headings: AnyArray, bins: Whole = 36) -> Floa
     """
     rates = checked_rates(rates)
     headings = checked_headings(headings, len(rates))
+    bins = int(bins)
     return means_by_bin(heading_bin(headings, bins), bins, rates).T
 
 
