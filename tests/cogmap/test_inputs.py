@@ -101,7 +101,7 @@ def test_whatever_holds_numbers_is_an_array(values: AnyArray) -> None:
     np.testing.assert_array_equal(array, np.arange(6).reshape(3, 2))
     assert type(array) is np.ndarray
     assert array.dtype in (np.float32, np.float64)
-    assert array.dtype.isnative
+    assert as_array("positions", values).dtype.isnative
 
 
 @pytest.mark.parametrize(
