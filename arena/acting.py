@@ -17,6 +17,7 @@ from arena.explorers import Explorers, Observation
 from arena.eye.base import AnyEye
 from arena.motions.policy import Policy
 from arena.rooms.arena import Arena
+from arena.settings import AnyArray, Whole, checked_whole
 from arena.smell.nose import Nose
 
 DT = 0.2
@@ -55,7 +56,8 @@ def act_and_look(explorers: Explorers, policy: Policy, dt: float) -> Iterator[St
     while len(going):
         there, poses = explorers.configurations(everyone), explorers.poses(everyone)
         sensed = explorers.sense(going)
-        told = np.asarray(policy(sensed), float)
+        # Whoever is asked may scale what it is handed in place.
+        told = np.asarray(policy({name: values.copy() for name, values in sensed.items()}), float)
         if told.shape != wanted:
             raise ArenaError(
                 f"a policy gave commands of shape {told.shape}, not of explorers and motors {wanted}"
@@ -94,13 +96,13 @@ def journeys(
     arena: Arena,
     policy: Policy,
     camera: AnyEye,
-    starts: Float[np.ndarray, "explorers axes"],
+    starts: AnyArray,
     *,
     nose: Nose = Nose(),
     body: Body = Disc(),
     dt: float = DT,
-    most_steps: int,
-    seed: int = 0,
+    most_steps: Whole,
+    seed: Whole = 0,
 ) -> Journeys:
     """Let many explorers go at once, in one room, steered by one policy, without keeping what they saw.
 
@@ -124,12 +126,10 @@ def journeys(
     ArenaError
         For a start that is not free, a count or seed out of range, and commands that mean nothing.
     """
+    starts = np.asarray(starts, np.float64)
     if not len(starts):
         raise ArenaError("there are no starts; give one for each explorer")
-    if most_steps < 1 or seed < 0:
-        raise ArenaError(
-            f"most_steps is {most_steps} and seed is {seed}; give at least 1 and no negative seed"
-        )
+    most_steps, seed = checked_whole("most_steps", most_steps, 1), checked_whole("seed", seed)
     everyone = np.arange(len(starts))
     explorers = Explorers(arena, camera, nose=nose, body=body, count=len(starts))
     rngs = [np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(len(starts))]

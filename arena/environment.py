@@ -18,7 +18,7 @@ from arena.explorers import Observation
 from arena.eye.base import AnyEye, see
 from arena.eye.camera import Camera
 from arena.rooms.arena import Arena
-from arena.settings import Settings
+from arena.settings import Settings, Whole, checked_whole
 from arena.smell.nose import Nose
 from arena.topview import TopView
 
@@ -82,7 +82,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
     Parameters
     ----------
     arena
-        A room, the name of one in the gallery, or the path of a TOML file.
+        A room, the name of one in the gallery, or the path of a TOML file; a furnished one unless told.
     camera, nose, body
         The animal.
     control
@@ -104,7 +104,7 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
 
     def __init__(
         self,
-        arena: Arena | str | Path,
+        arena: Arena | str | Path = "furnished",
         *,
         camera: AnyEye = Camera.panoramic(92, 15),
         nose: Nose = Nose(),
@@ -144,15 +144,16 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         self._now = np.zeros(1)
 
     def reset(
-        self, *, seed: int | None = None, options: Mapping[str, Any] | None = None
+        self, *, seed: Whole | None = None, options: Mapping[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         """Begin an episode, where the options say or anywhere in free space."""
-        super().reset(seed=seed)
+        super().reset(seed=None if seed is None else checked_whole("seed", seed))
         self._placed = self.body.place(self.arena, self.start(options or {}), self.np_random)
         self._sniffer = self.nose.sniffer(len(self.arena.sources), self.np_random)
         self._now[0] = 0.0
         self._trail: list[tuple[float, float]] = []
-        return self._sense(self._placed, touched=False)
+        info = self._sense(self._placed, touched=False)
+        return copied(self._sensed), info
 
     def start(self, options: Mapping[str, Any]) -> tuple[float, ...]:
         """Read the options of `reset`, or draw a start from free space."""
@@ -180,11 +181,12 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         touched = self._placed.go(self.velocities(command).tolist(), self.dt)
         self._now[0] += self.dt
         before = self._sensed
-        after, info = self._sense(self._placed, touched=touched)
-        return after, self.reward(before, after), False, False, info
+        info = self._sense(self._placed, touched=touched)
+        after = copied(self._sensed)
+        return after, self.reward(before, copied(after)), False, False, info
 
     def render(self) -> UInt8[np.ndarray, "height width 3"] | None:
-        """Draw what the animal sees beside where it is."""
+        """Draw what the animal sees beside where it is, padded to an even size, as films want it."""
         if self.render_mode is None:
             return None
         if self._placed is None:
@@ -203,9 +205,11 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
         frame = np.zeros((rows, size[0], 3), np.uint8)
         above = (rows - size[1]) // 2
         frame[above : above + size[1]] = shown
-        return np.hstack([frame, top])
+        drawn = np.hstack([frame, top])
+        odd = [(0, length % 2) for length in drawn.shape[:2]]
+        return np.pad(drawn, [*odd, (0, 0)])
 
-    def _sense(self, placed: Placed, *, touched: bool) -> tuple[Observation, dict[str, Any]]:
+    def _sense(self, placed: Placed, *, touched: bool) -> dict[str, Any]:
         there = np.array([placed.configuration])
         poses = self.body.camera_poses(there)
         view = np.empty((1, self.camera.height, self.camera.width, 3), np.uint8)
@@ -215,7 +219,12 @@ class Explorer(gymnasium.Env[Observation, np.ndarray]):
             self._trail.append((poses[0, 0], poses[0, 1]))
         self._sensed = {"view": view[0], "odour": odour}
         joints = {} if self.body.axes == POSE else {"joints": there[0]}
-        return self._sensed, {"pose": poses[0], "touched": touched, **joints}
+        return {"pose": poses[0], "touched": touched, **joints}
+
+
+def copied(sensed: Observation) -> Observation:
+    """Copy what is handed out: whoever scales it in place changes neither reward nor frame."""
+    return {name: values.copy() for name, values in sensed.items()}
 
 
 def _start(options: Mapping[str, Any], body: Body) -> tuple[float, ...] | None:

@@ -23,12 +23,14 @@ from arena.eye.base import AnyEye, see
 from arena.eye.camera import Camera, Images
 from arena.motions.base import Motion, MovesAnyBody, Striding, Walk, join
 from arena.motions.policy import Policy
+from arena.paths import user_path
 from arena.recordings import storage
 from arena.recordings.origin import origin, unlike
 from arena.recordings.recording import Recording
 from arena.recordings.resuming import refuse_another
 from arena.recordings.sharding import shards, write_shard
 from arena.rooms.arena import Arena
+from arena.settings import AnyArray, Whole, checked_whole
 from arena.smell.nose import Nose
 from arena.steered import of_one, write_down
 
@@ -40,9 +42,9 @@ def explore(
     *,
     nose: Nose = Nose(),
     body: Body = Disc(),
-    views: int | None = None,
-    seed: int = 0,
-    start: tuple[float, ...] | None = None,
+    views: Whole | None = None,
+    seed: Whole = 0,
+    start: AnyArray | None = None,
     dt: float | None = None,
     out: str | Path | None = None,
     progress: bool = False,
@@ -79,12 +81,15 @@ def explore(
         For a count or seed out of range, a body that does not fit, commands that mean nothing, or an `out`
         that holds something else.
     """
+    seed = checked_whole("seed", seed)
+    views = None if views is None else checked_whole("views", views, 1)
     parts = {"camera": camera, "nose": nose, "body": body}
     told = {"arena": arena.to_toml(), "seed": seed, **_described(parts)}
-    path = None if out is None else Path(out)
+    path = None if out is None else user_path(out)
     if not isinstance(motion, Motion):
-        _check_numbers(views, seed)
-        dt, name = DT if dt is None else dt, getattr(motion, "__name__", type(motion).__name__)
+        dt = DT if dt is None else float(dt)
+        start = None if start is None else tuple(np.asarray(start, float).tolist())
+        name = getattr(motion, "__name__", type(motion).__name__)
         told |= {"motion": {"kind": name, "start": start, "dt": dt}, "walk": {}, "origin": origin()}
         rng = np.random.default_rng(np.random.SeedSequence(seed).spawn(1)[0])
         one = Explorers(arena, camera, nose=nose, body=body, count=1)
@@ -96,7 +101,6 @@ def explore(
     if start is not None or dt is not None:
         raise ArenaError(f"start and dt are of a policy; {type(motion).__name__} has its own")
     views = motion.default_views if views is None else views
-    _check_numbers(views, seed)
     attributes = told | _described({"motion": motion}) | {"views": views}
     begun = None if path is None else _begun(path, attributes)
     if path is not None and begun is not None and not begun.missing:
@@ -147,11 +151,6 @@ def _walk(motion: Motion, arena: Arena, body: Body, views: int | None, rng: np.r
         f"{type(motion).__name__} steers a disc, and this body is of kind {type(body).__name__}; "
         "let it babble, replay a path or go by a policy"
     )
-
-
-def _check_numbers(views: int | None, seed: int) -> None:
-    if (views is not None and views < 1) or seed < 0:
-        raise ArenaError(f"views is {views} and seed is {seed}; give at least one view and no negative seed")
 
 
 def _described(parts: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,8 +1,11 @@
 """Settings: the values that describe a body, a nose or a motion, checked once, then never changed."""
 
+from collections.abc import Mapping, Sequence
 from reprlib import Repr
-from typing import Annotated
+from typing import Annotated, Any, TypeAlias
 
+import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from arena.errors import ArenaError
@@ -10,6 +13,10 @@ from arena.errors import ArenaError
 Positive = Annotated[float, Field(ge=0.01, le=100)]
 Spread = Annotated[float, Field(ge=0, le=100)]
 Share = Annotated[float, Field(ge=0, le=1)]
+Whole: TypeAlias = int | np.integer
+"""A whole number, Python's or numpy's."""
+AnyArray: TypeAlias = ArrayLike | Sequence[Any]
+"""Numbers as people have them: arrays, nested lists, DataFrames, Series, tensors, what has `__array__`."""
 
 _shortened = Repr()
 _shortened.maxstring = 60
@@ -28,9 +35,33 @@ class Settings(BaseModel):
 
     def __init__(self, **fields: object) -> None:
         try:
-            super().__init__(**fields)
+            super().__init__(**plain(fields))
         except ValidationError as error:
             raise ArenaError(f"{type(self).__name__}: {first_error(error)}") from None
+
+
+def plain(value: Any) -> Any:
+    """Turn numpy's numbers and arrays into Python's, in tables and lists, too; JSON knows no others."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    if isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
+    if type(value) in (list, tuple):
+        return type(value)(map(plain, value))
+    return value
+
+
+def checked_whole(name: str, value: object, least: int = 0) -> int:
+    """Return a whole number of at least `least`.
+
+    Raises
+    ------
+    ArenaError
+        For anything else.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise ArenaError(f"{name} is {value!r}; give a whole number of at least {least}")
+    return int(value)
 
 
 def first_error(error: ValidationError) -> str:

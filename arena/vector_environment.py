@@ -13,10 +13,11 @@ from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 
 from arena.bodies.base import POSE
-from arena.environment import Explorer, OdourClimbed
+from arena.environment import Explorer, OdourClimbed, copied
 from arena.errors import ArenaError
 from arena.explorers import Explorers, Observation
 from arena.rooms.arena import Arena
+from arena.settings import Whole, checked_whole
 
 Truth = dict[str, Any]
 
@@ -49,18 +50,16 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
 
     def __init__(
         self,
-        arena: Arena | str | Path,
+        arena: Arena | str | Path = "furnished",
         *,
-        num_envs: int = 1,
-        max_episode_steps: int | None = None,
+        num_envs: Whole = 1,
+        max_episode_steps: Whole | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         **fields: Any,
     ) -> None:
-        if num_envs < 1 or (max_episode_steps is not None and max_episode_steps < 1):
-            raise ArenaError(
-                f"num_envs is {num_envs} and max_episode_steps is {max_episode_steps}; "
-                "give at least one of each"
-            )
+        num_envs = checked_whole("num_envs", num_envs, 1)
+        if max_episode_steps is not None:
+            max_episode_steps = checked_whole("max_episode_steps", max_episode_steps, 1)
         if fields.get("render_mode") is not None:
             raise ArenaError("many explorers draw no frames; leave render_mode out")
         self.explorer = Explorer(arena, **fields)
@@ -80,17 +79,22 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
         self._sensed: Observation = {}
 
     def reset(
-        self, *, seed: int | Sequence[int | None] | None = None, options: Mapping[str, Any] | None = None
+        self,
+        *,
+        seed: Whole | Sequence[Whole | None] | np.ndarray | None = None,
+        options: Mapping[str, Any] | None = None,
     ) -> tuple[Observation, Truth]:
         """Begin episodes, in those where `options["reset_mask"]` is true, or in all; see `Explorer.reset`."""
         options = dict(options or {})
         which = np.flatnonzero(options.pop("reset_mask", np.ones(self.num_envs, bool)))
-        seeds = [seed + k for k in range(self.num_envs)] if isinstance(seed, int) else seed
+        if isinstance(seed, int | np.integer):
+            seed = [checked_whole("seed", seed) + k for k in range(self.num_envs)]
+        seeds = None if seed is None else [None if s is None else checked_whole("seed", s) for s in seed]
         if seeds is not None and len(seeds) != self.num_envs:
             raise ArenaError(f"there are {len(seeds)} seeds for {self.num_envs} explorers; give one each")
         self._begin(which, options, seeds)
         self._sensed = self._explorers.sense(which)
-        return self._sensed, self._truth(which)
+        return copied(self._sensed), self._truth(which)
 
     def step(self, actions: np.ndarray) -> tuple[Observation, np.ndarray, np.ndarray, np.ndarray, Truth]:
         """Obey for `dt` seconds, then look and smell; who has ended begins anew."""
@@ -119,7 +123,7 @@ class VectorExplorer(gymnasium.vector.VectorEnv[Observation, np.ndarray, np.ndar
             self._begin(ended, {})
             self._sensed = self._explorers.sense(ended)
             info = {**self._truth(everyone), **final, **{f"_{name}": truncated.copy() for name in final}}
-        return self._sensed, rewards, np.zeros(self.num_envs, bool), truncated, info
+        return copied(self._sensed), rewards, np.zeros(self.num_envs, bool), truncated, info
 
     def _begin(
         self, which: np.ndarray, options: Mapping[str, Any], seeds: Sequence[int | None] | None = None

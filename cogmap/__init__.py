@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from cogmap.errors import (
         CogmapError,
         OpenSeamWarning,
+        SeparatePiecesWarning,
         UnlikeArithmeticWarning,
         UntrustedMapWarning,
     )
@@ -41,6 +42,7 @@ __all__ = [
     "Plan",
     "PostureReacher",
     "Reacher",
+    "SeparatePiecesWarning",
     "UnlikeArithmeticWarning",
     "UntrustedMapWarning",
     "VisualRoadmap",
@@ -62,7 +64,13 @@ _HOMES = {
     "checking": ("Checked", "check"),
     "control": ("MotorModel", "PostureReacher", "Reacher"),
     "coordinates": ("GeneralisedCoordinates",),
-    "errors": ("CogmapError", "OpenSeamWarning", "UnlikeArithmeticWarning", "UntrustedMapWarning"),
+    "errors": (
+        "CogmapError",
+        "OpenSeamWarning",
+        "SeparatePiecesWarning",
+        "UnlikeArithmeticWarning",
+        "UntrustedMapWarning",
+    ),
     "evaluation.scoring": ("score",),
     "features": ("BagOfWords",),
     "imagination": ("Imagination",),

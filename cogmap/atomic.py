@@ -11,6 +11,20 @@ METRICS = "metrics.json"
 """What every finished experiment leaves, and what marks a folder as one."""
 
 
+def user_path(path: str | Path) -> Path:
+    """Give a path in which `~` or `~user` at the beginning stands for a home.
+
+    Raises
+    ------
+    CogmapError
+        Where there is no such home.
+    """
+    try:
+        return Path(path).expanduser()
+    except RuntimeError:
+        raise CogmapError(f"{path} begins with a home that is not known here; give the whole path") from None
+
+
 def atomic_write(path: Path, *, overwrite: bool = True) -> AbstractContextManager[Path]:
     """Write as `arena.atomic.atomic_write` does, and raise a `CogmapError` when it cannot be done."""
     # Only when something is written: a map that grows in memory does without the arena and its compiler.
@@ -28,7 +42,7 @@ def check_replaceable(out: Path, mark: str, wanted: str, beside: tuple[str, ...]
 
 
 @contextmanager
-def result_folder(out: Path) -> Iterator[Path]:
+def result_folder(out: str | Path) -> Iterator[Path]:
     """Give a folder to fill, which takes the place of `out` at the end; a failure changes nothing.
 
     `SHA256SUMS` in it has the digests of all its files.
@@ -38,6 +52,7 @@ def result_folder(out: Path) -> Iterator[Path]:
     CogmapError
         When `out` holds anything but an earlier result, or cannot be written.
     """
+    out = user_path(out)
     check_replaceable(out, METRICS, "the result of an experiment; choose another folder")
     with atomic_write(out) as folder:
         folder.mkdir()

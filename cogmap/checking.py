@@ -11,8 +11,9 @@ from pathlib import Path
 
 from arena import Arena, ArenaError, Recording
 from arena.recordings import storage
+from arena.recordings.importing import BEGUN, unfinished
 from arena.recordings.rescue import examine
-from cogmap.atomic import METRICS
+from cogmap.atomic import METRICS, user_path
 from cogmap.control import MotorModel
 from cogmap.coordinates import GeneralisedCoordinates
 from cogmap.digests import SUMS, compare_sums
@@ -74,11 +75,12 @@ def check(path: str | Path) -> Checked:
     CogmapError
         When there is nothing, or nothing of ours.
     """
-    path = Path(path)
+    path = user_path(path)
     if path.suffix == ".toml" and path.is_file():
         return _toml(path)
     checks: dict[str, Callable[[Path], Checked]] = {
         "zarr.json": _recording,
+        BEGUN: _recording,
         **{f"{kind}.json": partial(_state, kind=kind) for kind in _LOADERS},
         METRICS: _result,
         MARK: _sweep,
@@ -95,6 +97,11 @@ def check(path: str | Path) -> Checked:
 
 def _recording(path: Path) -> Checked:
     try:
+        there = unfinished(path)
+        if there is not None:
+            said = f"{path} is half-written: {there} views are there"
+            advice = "the same `import` command goes on where it stopped"
+            return Checked(path, "recording", None, {"views": f"{there}"}, (said,), advice)
         found = examine(path)
         if not found.damage and not found.unwritten:
             Recording.open(path)
@@ -108,13 +115,13 @@ def _recording(path: Path) -> Checked:
     if damage and whole and "times" in found.columns:
         advice = (
             f"{whole} of {count} views are whole, and `--rescue` saves them; or remove files of views that "
-            "are damaged, and the same `explore` command makes them again"
+            "are damaged, and the same command as before makes them again"
         )
     elif damage:
         advice = "record it again"
     elif found.unwritten:
         damage = (f"{path} is half-written: {whole} of its {count} views are there",)
-        advice = "the same `explore` command goes on where it stopped"
+        advice = "the same command goes on where it stopped"
     return Checked(path, "recording", storage.VERSION, parts, damage, advice)
 
 

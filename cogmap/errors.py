@@ -15,3 +15,7 @@ class UnlikeArithmeticWarning(UserWarning):
 
 class UntrustedMapWarning(UserWarning):
     """A map that its own diagnosis does not trust was asked what it perceives; the message says why."""
+
+
+class SeparatePiecesWarning(UserWarning):
+    """A neighbour graph falls into pieces between which nothing is known; the message says how many."""

@@ -10,18 +10,18 @@ from jaxtyping import Float
 
 from arena import Recording
 from arena.atomic import check_absent
-from cogmap.atomic import atomic_write
+from cogmap.atomic import atomic_write, user_path
 from cogmap.cells import poisson_spikes
 from cogmap.cells.sessions.samples import sample_durations
 from cogmap.errors import CogmapError
-from cogmap.inputs import checked_count
+from cogmap.inputs import Whole, checked_count
 from cogmap.map.cognitive_map import CognitiveMap
 
 RESOLUTION = 1e-6
 """Of spike times, s."""
 
 
-def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int = 0) -> None:
+def export_nwb(recording: Recording, cmap: CognitiveMap, out: str | Path, *, seed: Whole = 0) -> None:
     """Write where the body was, how fast every cell fired and when it spiked, as a new NWB file.
 
     The cells look at the views. In each view a cell spikes n ~ Poisson(λ T) times, spread evenly over how
@@ -54,6 +54,7 @@ def export_nwb(recording: Recording, cmap: CognitiveMap, out: Path, *, seed: int
         raise CogmapError(
             "writing NWB needs pynwb, which is not installed; run `pip install 'cogmap[nwb]'`"
         ) from None
+    out = user_path(out)
     check_absent(out, CogmapError)
     if recording.poses is None:
         raise CogmapError("the recording has no poses to export; use one that kept them")

@@ -19,7 +19,7 @@ from arena.eye.background import backdrop
 from arena.eye.noise import Generators, add_noise
 from arena.eye.projection import Lens, direction, unsound
 from arena.rooms.arena import Arena
-from arena.settings import Settings
+from arena.settings import AnyArray, Settings
 
 Images = UInt8[np.ndarray, "views height width 3"]
 Poses = Float[np.ndarray, "views 3"]
@@ -113,7 +113,7 @@ class Camera(Settings):
     def render(
         self,
         arena: Arena,
-        poses: Poses,
+        poses: AnyArray,
         *,
         out: Images | None = None,
         rng: Generators | None = None,
@@ -159,7 +159,7 @@ class Camera(Settings):
         add_noise(out, self.noise, rng)
         return out
 
-    def depth(self, arena: Arena, poses: Poses) -> Float[np.ndarray, "views width"]:
+    def depth(self, arena: Arena, poses: AnyArray) -> Float[np.ndarray, "views width"]:
         """Distance (m) along the middle ray of each column to the nearest face of any height, else infinity.
 
         Raises
@@ -173,7 +173,7 @@ class Camera(Settings):
         _in_threads(lambda at: raycast.measure(poses[at], faces, lens, out[at]), len(poses))
         return out
 
-    def identify(self, arena: Arena, poses: Poses) -> Int32[np.ndarray, "views height width"]:
+    def identify(self, arena: Arena, poses: AnyArray) -> Int32[np.ndarray, "views height width"]:
         """Tell which surface is seen at the middle of each pixel.
 
         Returns
@@ -213,7 +213,13 @@ def _in_threads(work: Callable[[slice], None], views: int) -> None:
         list(pool.map(work, [slice(first, first + share) for first in range(0, views, share)]))
 
 
-def _checked(poses: Poses) -> Float[np.ndarray, "views 3"]:
+def _checked(given: AnyArray) -> Float[np.ndarray, "views 3"]:
+    try:
+        poses = given if isinstance(given, np.ndarray) else np.array(given, np.float64)
+    except (TypeError, ValueError, RuntimeError) as error:
+        raise ArenaError(
+            f"the poses are no numbers: {error}; give x, y (m) and heading (rad) a row"
+        ) from None
     if poses.ndim != 2 or poses.shape[1] != 3:
         raise ArenaError(f"the poses are of shape {poses.shape}; give x, y (m) and heading (rad) a row")
     # Of this layout only: the kernels would be compiled again for read-only poses.

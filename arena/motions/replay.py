@@ -18,6 +18,7 @@ from arena.motions.base import Walk
 from arena.motions.fitting import fitted
 from arena.motions.locomotion import Point, free_space
 from arena.motions.paths import read_joints
+from arena.paths import user_path
 from arena.recordings.track_format import Above, TrackFormat
 from arena.recordings.tracks import Positions, RecordedPath, Times, read_as
 from arena.rooms.arena import Arena
@@ -102,7 +103,7 @@ class Replay(TrackFormat):
         if not isinstance(body, Disc):
             return self._joints(arena, body, views)
         free = free_space(arena, body)
-        recorded = self._fitted(free) if self.fit else read_as(self.path, self)
+        recorded = self._fitted(free) if self.fit else read_as(user_path(self.path), self)
         times, positions, notes = _bridged(recorded)
         positions += self.offset
         if recorded.headings is None:
@@ -123,7 +124,7 @@ class Replay(TrackFormat):
             raise ArenaError(
                 f"{', '.join([*given, 'offset', 'fit'])} and clip are of a disc's path; leave them out"
             )
-        times, joints = read_joints(self.path, [axis.name for axis in body.axes])
+        times, joints = read_joints(user_path(self.path), [axis.name for axis in body.axes])
         taken = self._taken(times, body.camera_poses(joints)[:, :2], views)
         there = wrapped(body, joints[taken])
         check_starts(body, arena, there)
@@ -132,7 +133,7 @@ class Replay(TrackFormat):
     def _fitted(self, free: BaseGeometry) -> RecordedPath:
         """Read the path and bring it into the room; the speed is that in the room."""
         unhurried = self.model_copy(update={"fastest": None})
-        recorded = read_as(self.path, unhurried, warn=self.fastest is None)
+        recorded = read_as(user_path(self.path), unhurried, warn=self.fastest is None)
         placed, scale, left_out, fast = fitted(recorded, free, self.fastest)
         notes = {**recorded.notes, "fitted_scale": scale}
         if self.fastest is not None:

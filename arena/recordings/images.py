@@ -10,6 +10,7 @@ import google_crc32c
 import numpy as np
 
 from arena.errors import ArenaError
+from arena.paths import user_path
 from arena.recordings.colours import Picture, as_rgb
 from arena.recordings.video import frame_rate, frames
 
@@ -87,7 +88,7 @@ def pictures_of(source: Any) -> Pictures:
         When there are none.
     """
     if isinstance(source, str | Path):
-        return _at(Path(source).expanduser())
+        return _at(user_path(source))
     shape = getattr(source, "shape", None)
     if shape is not None and len(shape) != 1:
         return _stacked(source, tuple(shape))
@@ -173,7 +174,7 @@ def _stacked(source: Any, shape: tuple[int, ...]) -> Pictures:
 def _one_by_one(source: Iterable[Any]) -> Iterator[Item]:
     for number, one in enumerate(source):
         if isinstance(one, str | Path):
-            path = Path(one).expanduser()
+            path = user_path(one)
             yield Item(str(path), path)
         else:
             # Whoever makes pictures may write the next one to the same memory.

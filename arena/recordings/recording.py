@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float32, Float64, Shaped, UInt8
 
 from arena.errors import ArenaError
+from arena.paths import user_path
 from arena.recordings import choosing, storage
 from arena.recordings.beside import Beside
 from arena.recordings.choosing import Moment, Several, WholeNumber
@@ -126,7 +127,7 @@ class Recording:
             When there is something at the path already, or it cannot be written.
         """
         views = ((rows, np.asarray(self.views[rows])) for rows in shards(len(self)))
-        with storage.new_folder(Path(path), self.views.shape, self._columns, self.attributes) as folder:
+        with storage.new_folder(user_path(path), self.views.shape, self._columns, self.attributes) as folder:
             write_shards(folder / "views", views)
 
     @classmethod
@@ -200,7 +201,7 @@ class Recording:
         if out is None:
             views, arrays, attributes = import_to_memory(pictures, lens, beside, progress=progress)
             return cls(views=views, **_fields(arrays), attributes=attributes)
-        path = Path(out).expanduser()
+        path = user_path(out)
         import_to_disk(pictures, lens, beside, path, progress=progress)
         return cls.open(path)
 
@@ -213,20 +214,21 @@ class Recording:
         ArenaError
             When it is missing, half-written, of another version, damaged or not a recording at all.
         """
-        there = unfinished(Path(path))
+        path = user_path(path)
+        there = unfinished(path)
         if there is not None:
             raise ArenaError(
                 f"{path} is half-written: {there} views are there; the same `import` command goes on where "
                 "it stopped"
             )
-        views, columns, attributes, missing = storage.load(Path(path))
+        views, columns, attributes, missing = storage.load(path)
         try:
             _check(views, columns)
         except ArenaError as error:
             raise ArenaError(f"{path} is damaged: {error}") from None
         if missing:
             command = "import" if "lens" in attributes else "explore"
-            raise ArenaError(storage.say_what_is_missing(Path(path), len(views), missing, command))
+            raise ArenaError(storage.say_what_is_missing(path, len(views), missing, command))
         return cls(views=views, **_fields(columns), attributes=attributes)
 
     @property

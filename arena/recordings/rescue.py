@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Bool
 
 from arena.errors import ArenaError
+from arena.paths import user_path
 from arena.recordings import storage
 from arena.recordings.recording import Recording, from_columns
 from arena.recordings.sharding import file, is_complete, shards
@@ -40,7 +41,7 @@ def examine(path: str | Path) -> Examined:
     ArenaError
         When it is missing, not a recording or of another version.
     """
-    path = Path(path)
+    path = user_path(path)
     attributes, arrays, sound = storage.read_head(path)
     damage = [] if sound else ["its attributes are not what was written"]
     columns, views, whole = dict[str, np.ndarray](), None, np.zeros(0, bool)

@@ -15,6 +15,7 @@ from arena.atomic import atomic_write
 from arena.errors import ArenaError
 from arena.recordings.digests import checksum, digest
 from arena.recordings.sharding import SHARD, codecs, file, is_complete, read_images, shards
+from arena.settings import plain
 
 VERSION = 4
 """Of the layout."""
@@ -81,7 +82,7 @@ class StoredViews:
         except DAMAGE as error:
             raise ArenaError(
                 f"{file(self._folder, shard)} is damaged ({first_line(error)}); remove it, and the same "
-                "`explore` command makes its views again, or open those that are whole with `arena.rescue`"
+                "command as before makes its views again, or open those that are whole with `arena.rescue`"
             ) from None
 
 
@@ -119,7 +120,7 @@ def describe(
     folder: Path, shape: tuple[int, ...], columns: Mapping[str, np.ndarray], attributes: Mapping[str, Any]
 ) -> None:
     """Write all of a recording but the images into a folder, which may hold these already."""
-    group = zarr.create_group(folder, zarr_format=3, attributes={**attributes, "version": VERSION})
+    group = zarr.create_group(folder, zarr_format=3, attributes={**plain(attributes), "version": VERSION})
     for name, values in columns.items():
         group.create_array(name, **_described(name, values.shape, str(values.dtype)))[...] = values
     group.create_array("views", **_described("views", shape, "uint8"))

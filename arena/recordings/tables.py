@@ -12,6 +12,7 @@ import pandas as pd
 from jaxtyping import Float64
 
 from arena.errors import ArenaError
+from arena.paths import user_path
 
 TIMES = ("t", "time", "times", "timestamp", "timestamps", "seconds")
 """Columns of times (s), in any case."""
@@ -66,7 +67,7 @@ def table_of(
     """
     is_file = isinstance(source, str | Path)
     label = str(source) if is_file else f"the table of {what}"
-    frame = _read(Path(source).expanduser(), label) if is_file else _framed(source, label, names)
+    frame = _read(user_path(source), label) if is_file else _framed(source, label, names)
     frame.columns = [str(name).strip() for name in frame.columns]
     twice = frame.columns[frame.columns.duplicated()]
     if len(twice):

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from arena.errors import ArenaError, TrackWarning
+from arena.paths import user_path
 from arena.recordings.columns import listed, names_of, read_columns
 from arena.recordings.delimited import Rows
 from arena.recordings.judged import lost_as
@@ -64,7 +65,7 @@ def read_track(path: str | Path, **options: Any) -> RecordedPath:
         something that is not a number, has fewer than two positions, or times that do not increase; for times
         that count frames, radians that are degrees, and the reverse.
     """
-    return read_as(Path(path).expanduser(), TrackFormat(**options))
+    return read_as(user_path(path), TrackFormat(**options))
 
 
 def read_as(path: Path, told: TrackFormat, *, warn: bool = True) -> RecordedPath:

@@ -21,11 +21,12 @@ from typing_extensions import TypeAliasType
 
 from arena.errors import ArenaError
 from arena.eye.scene import Scene, scene
+from arena.paths import BYTE_ORDER_MARK, user_path
 from arena.rooms.light import Light
 from arena.rooms.parts import Block, Box, FrozenModel, Length, Material, Pillar, Polygon, Solid, Source, Wall
 from arena.rooms.schema import TidySchema
 from arena.rooms.surfaces import Surfaces, surfaces
-from arena.settings import first_error
+from arena.settings import AnyArray, first_error
 from arena.smell.odour import OdourField
 
 Channel = Annotated[int, Field(strict=True, ge=0, le=255)]
@@ -99,7 +100,7 @@ class Arena(FrozenModel):
     def parse(cls, text: str) -> Arena:
         """Read an arena from TOML text."""
         try:
-            fields = tomllib.loads(text)
+            fields = tomllib.loads(text.removeprefix(BYTE_ORDER_MARK))
         except (ValueError, RecursionError) as error:
             raise ArenaError(f"this is not TOML: {error}") from None
         if not fields:
@@ -109,7 +110,7 @@ class Arena(FrozenModel):
     @classmethod
     def load(cls, source: str | Path) -> Arena:
         """Load an arena by the name of a room in the gallery or by the path of a TOML file."""
-        path = Path(source)
+        path = user_path(source)
         if path.suffix != ".toml":
             file = resources.files("arena") / "gallery" / f"{source}.toml"
             if not file.is_file():
@@ -123,7 +124,7 @@ class Arena(FrozenModel):
         except ArenaError as error:
             raise ArenaError(f"{path}: {error}") from None
         except (OSError, UnicodeDecodeError) as error:
-            reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
+            reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text; save it as such"
             raise ArenaError(f"cannot read the arena {path}: {reason}") from None
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Arena:  # noqa: ARG002
@@ -156,11 +157,11 @@ class Arena(FrozenModel):
         region: BaseGeometry = self.walkable.buffer(-radius) - self.obstacles.buffer(radius)
         return region
 
-    def is_free(self, xy: Float[np.ndarray, "points 2"], radius: float) -> Bool[np.ndarray, "points"]:
+    def is_free(self, xy: AnyArray, radius: float) -> Bool[np.ndarray, "points"]:
         """Whether a disc of this radius (m) centred at each point (m) touches nothing."""
         region = self.free_space(radius)
         shapely.prepare(region)
-        free: np.ndarray = shapely.contains_xy(region, xy)
+        free: np.ndarray = shapely.contains_xy(region, np.asarray(xy, np.float64))
         return free
 
     def sample_free(
@@ -198,7 +199,9 @@ class Arena(FrozenModel):
         space = pymunk.Space()
         parts = shapely.get_parts(self.walkable)
         rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
-        rings += [shapely.LinearRing(solid.outline) for solid in self.solids]
+        # Thousands of solids that coincide stop a body as one does.
+        outlines = {solid.outline.tobytes(): solid.outline for solid in self.solids}
+        rings += [shapely.LinearRing(outline) for outline in outlines.values()]
         edges = [pair for ring in rings for pair in zip(ring.coords[:-1], ring.coords[1:], strict=True)]
         edges += [(wall.start, wall.end) for wall in self.walls]
         for a, b in edges:

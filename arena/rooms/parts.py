@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field
 from typing_extensions import TypeAliasType
 
 from arena.rooms.materials import materials
+from arena.settings import plain
 
 PILLAR_SIDES = 32
 """A pillar is a regular prism, the same one for the eye, the body and the odour."""
@@ -31,6 +32,8 @@ def _known(name: str) -> str:
 
 
 def _simple(corners: tuple[Point, ...]) -> tuple[Point, ...]:
+    if len(corners) > 3 and corners[0] == corners[-1]:  # closed, as many programs write outlines
+        corners = corners[:-1]
     sides = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
     if sides.min() < SHORTEST:
         corner = int(sides.argmin())
@@ -41,7 +44,7 @@ def _simple(corners: tuple[Point, ...]) -> tuple[Point, ...]:
 
 
 Polygon = Annotated[tuple[Point, ...], Field(min_length=3), AfterValidator(_simple)]
-"""Corners (m) in either order around."""
+"""Corners (m) in either order around; the first may be repeated at the end."""
 _Named = Field(json_schema_extra=lambda schema: schema.update(enum=list(materials())))
 Material = TypeAliasType("Material", Annotated[str, AfterValidator(_known), _Named])
 """The name of a recipe in `arena.rooms.recipes`."""
@@ -55,6 +58,11 @@ class FrozenModel(BaseModel):
     """A frozen value that knows no other fields than its own."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_plain_numbers(cls, fields: object) -> object:
+        return plain(fields)
 
 
 class Wall(FrozenModel):
@@ -137,7 +145,7 @@ class Block(FrozenModel):
     """A solid prism on any simple polygon, which need not be convex."""
 
     corners: Polygon
-    """In either order around, m."""
+    """In either order around, m; the first may be repeated at the end."""
     height: Length = 0.6
     """Above the floor, m."""
     material: Annotated[

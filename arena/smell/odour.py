@@ -132,13 +132,18 @@ class OdourField:
 
     @cached_property
     def _edges(self) -> Float[np.ndarray, "edges 2 2"]:
-        rings = [np.stack([outline, np.roll(outline, -1, axis=0)], axis=1) for outline in self.solids]
+        rings = [np.stack([outline, np.roll(outline, -1, axis=0)], axis=1) for outline in self._outlines]
         return np.concatenate([self.walls, *rings])
+
+    @cached_property
+    def _outlines(self) -> list[Float[np.ndarray, "_ 2"]]:
+        """Those of the solids, each once: some rooms are made of thousands that coincide."""
+        return list({np.asarray(outline, float).tobytes(): outline for outline in self.solids}.values())
 
     @cached_property
     def _free(self) -> Bool[np.ndarray, "nx ny"]:
         inside = np.zeros(self._shape, dtype=bool)
-        for outline in self.solids:
+        for outline in self._outlines:
             inside |= shapely.contains_xy(shapely.Polygon(outline), *np.moveaxis(self._centres, -1, 0))
         return ~inside
 
@@ -147,15 +152,21 @@ class OdourField:
     ) -> Bool[np.ndarray, "links"]:
         """Whether any wall crosses the way from a to b; a point on a wall belongs to its left."""
         parted = np.zeros(len(a), dtype=bool)
-        for start, end in self._edges:
-            along = end - start
-            side_a, side_b = (along[0] * (p - start)[:, 1] - along[1] * (p - start)[:, 0] for p in (a, b))
+        near = shapely.STRtree(_boxes(a, b))
+        for first in range(0, len(self._edges), 1024):
+            starts, ends = np.moveaxis(self._edges[first : first + 1024], 1, 0)
+            edge, link = near.query(_boxes(starts, ends, margin=1e-6))
+            start, along = starts[edge], (ends - starts)[edge]
+            side_a, side_b = (
+                along[:, 0] * (p[link] - start)[:, 1] - along[:, 1] * (p[link] - start)[:, 0] for p in (a, b)
+            )
             crossing = np.flatnonzero((side_a >= 0) != (side_b >= 0))
+            link, start, along = link[crossing], start[crossing], along[crossing]
             share = side_a[crossing] / (side_a[crossing] - side_b[crossing])
-            hit = a[crossing] + share[:, None] * (b - a)[crossing]
-            where = (hit - start) @ along / (along @ along)
+            hit = a[link] + share[:, None] * (b - a)[link]
+            where = ((hit - start) * along).sum(axis=1) / (along**2).sum(axis=1)
             # Walls that share a corner must not leak there by rounding.
-            parted[crossing] |= (where > -1e-9) & (where < 1 + 1e-9)
+            parted[link[(where > -1e-9) & (where < 1 + 1e-9)]] = True
         return parted
 
     def _spread(self) -> Float[np.ndarray, "cells odorants"]:
@@ -230,6 +241,14 @@ class OdourField:
                 ~cells, sampling=self._step, return_distances=False, return_indices=True
             )
         )
+
+
+def _boxes(
+    a: Float[np.ndarray, "lines 2"], b: Float[np.ndarray, "lines 2"], margin: float = 0.0
+) -> np.ndarray:
+    """Make the boxes around lines from a to b, and a margin more."""
+    low, high = np.minimum(a, b) - margin, np.maximum(a, b) + margin
+    return np.asarray(shapely.box(*low.T, *high.T))
 
 
 @kernel()

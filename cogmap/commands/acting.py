@@ -12,7 +12,7 @@ from arena import Arena, Camera, Disc, Recording
 from arena.acting import Journeys
 from arena.bodies.catalogue import bodies
 from cogmap.atomic import result_folder
-from cogmap.commands.common import Json, Seed, read_image, tell
+from cogmap.commands.common import Json, MaybePath, Seed, UserPath, read_image, tell
 from cogmap.control import MotorModel, Outcome, Reacher, Reaching
 from cogmap.errors import CogmapError
 from cogmap.experiments.acting.travels import babble, draw_poses, travel
@@ -26,13 +26,13 @@ from cogmap.plots import plot_journeys
 
 
 def _dream(
-    cmap: Path,
-    recording: Path,
+    cmap: UserPath,
+    recording: UserPath,
     /,
     *,
-    start: Annotated[Path, Parameter(name="--from")],
-    goal: Annotated[Path, Parameter(name="--to")],
-    out: Path,
+    start: Annotated[UserPath, Parameter(name="--from")],
+    goal: Annotated[UserPath, Parameter(name="--to")],
+    out: UserPath,
     as_json: Json = False,
 ) -> None:
     """Imagine the way from one view to another, as a film.
@@ -62,13 +62,13 @@ def _dream(
 
 
 def _reach(
-    cmap: Path,
-    recording: Path,
+    cmap: UserPath,
+    recording: UserPath,
     /,
     *,
-    goal: Path,
-    out: Path,
-    motor: Path | None = None,
+    goal: UserPath,
+    out: UserPath,
+    motor: MaybePath = None,
     start: tuple[float, float, float] | None = None,
     seed: Seed = 0,
     as_json: Json = False,

@@ -13,7 +13,7 @@ from arena.recordings.track_format import TrackFormat
 from cogmap.atomic import result_folder
 from cogmap.cells import MeasuredSession, Session, session
 from cogmap.cells.sessions.units import positive
-from cogmap.commands.common import Json, Seed, Told, tell
+from cogmap.commands.common import Json, MaybePath, Seed, Told, UserPath, tell
 from cogmap.errors import CogmapError
 from cogmap.evaluation.map_session import map_session
 from cogmap.experiments.parameters import parse, unknown
@@ -27,10 +27,10 @@ _OF_MEASURES = ("bin", "smoothing", "window")
 
 
 def _cells(
-    *sources: Path,
-    out: Path,
-    cmap: Annotated[Path | None, Parameter(name="--map")] = None,
-    track: Path | None = None,
+    *sources: UserPath,
+    out: UserPath,
+    cmap: Annotated[MaybePath, Parameter(name="--map")] = None,
+    track: MaybePath = None,
     told: Told = None,
     shuffles: int = 200,
     seed: Seed = 0,

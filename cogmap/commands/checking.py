@@ -1,16 +1,15 @@
 """The command that tells whether what was written is still what it was."""
 
-from pathlib import Path
 from typing import Any
 
 import arena
 from arena.atomic import check_absent
 from cogmap.checking import check
-from cogmap.commands.common import Json, tell
+from cogmap.commands.common import Json, MaybePath, UserPath, tell
 from cogmap.errors import CogmapError
 
 
-def _check(path: Path, /, *, rescue: Path | None = None, as_json: Json = False) -> None:
+def _check(path: UserPath, /, *, rescue: MaybePath = None, as_json: Json = False) -> None:
     """Compare all of a recording, map, result or sweep with its checksums, and tell what is whole.
 
     Examples: `cogmap check map --json`; `cogmap check walk.zarr --rescue rest.zarr`.

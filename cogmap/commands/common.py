@@ -2,20 +2,31 @@
 
 import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import cv2
 import numpy as np
-from cyclopts import Parameter
+from cyclopts import Parameter, Token
 from jaxtyping import UInt8
 
+from cogmap.atomic import user_path
 from cogmap.errors import CogmapError
 from cogmap.tables import as_table
 
 Json = Annotated[bool, Parameter(name="--json", negative="", help="Print metrics as JSON on stdout.")]
 Told = Annotated[list[str] | None, Parameter(name="--set", negative="")]
 Seed = Annotated[int, Parameter(help="Of everything random; the same seed gives the same arrays.")]
+
+
+def _from_home(_: object, tokens: Sequence[Token]) -> Path:
+    """Read a path as a shell does, also where none has read it: in `--out=~/map`, or without a shell."""
+    return user_path(tokens[0].value)
+
+
+UserPath = Annotated[Path, Parameter(converter=_from_home)]
+MaybePath = Annotated[Path | None, Parameter(converter=_from_home)]
 
 
 def tell(metrics: dict[str, Any], *, as_json: bool) -> None:

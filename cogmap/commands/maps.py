@@ -1,6 +1,7 @@
 """Commands about maps: learn one, score it, write down what its cells do."""
 
 import sys
+import warnings
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,8 +10,8 @@ from cyclopts import Parameter
 
 from arena import Recording
 from arena.atomic import check_absent
-from cogmap.commands.common import Json, Seed, tell
-from cogmap.errors import CogmapError
+from cogmap.commands.common import Json, Seed, UserPath, tell
+from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.evaluation.populations import usual_charts
 from cogmap.evaluation.scoring import score
 from cogmap.export import export_nwb
@@ -18,10 +19,10 @@ from cogmap.map.cognitive_map import CognitiveMap
 
 
 def _learn(
-    recording: Path,
+    recording: UserPath,
     /,
     *,
-    out: Path,
+    out: UserPath,
     charts: int | None = None,
     refine: Annotated[bool, Parameter(negative="")] = False,
     seed: Seed = 0,
@@ -55,7 +56,7 @@ def _learn(
     tell(about, as_json=as_json)
 
 
-def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False) -> None:
+def _score(cmap: UserPath, recording: UserPath, /, *, train: UserPath, as_json: Json = False) -> None:
     """Score a map on a fresh recording against the true poses.
 
     Example: `cogmap score map fresh.zarr --train walk.zarr --json`.
@@ -71,12 +72,18 @@ def _score(cmap: Path, recording: Path, /, *, train: Path, as_json: Json = False
     """
     grown = CognitiveMap.load(cmap)
     fresh, walk = _with_truth(recording), _with_truth(train)
-    seen, known = grown.perceive(fresh.views), grown.perceive(walk.views)
+    if not grown.trusted_:
+        sys.stderr.write(f"cogmap: this map is not to be trusted: {grown.reason_}\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UntrustedMapWarning)  # it is said
+        seen, known = grown.perceive(fresh.views), grown.perceive(walk.views)
     figures = score(seen, np.asarray(fresh.poses), train=(known, np.asarray(walk.poses)))
     tell({**_verdict(grown), **figures}, as_json=as_json)
 
 
-def _export(recording: Path, cmap: Path, /, *, out: Path, seed: Seed = 0, as_json: Json = False) -> None:
+def _export(
+    recording: UserPath, cmap: UserPath, /, *, out: UserPath, seed: Seed = 0, as_json: Json = False
+) -> None:
     """Write a recording with the rates and spikes of a map's cells as NWB; needs `pip install 'cogmap[nwb]'`.
 
     Example: `cogmap export walk.zarr map --out walk.nwb`.

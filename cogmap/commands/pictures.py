@@ -2,7 +2,6 @@
 
 import os
 import sys
-from pathlib import Path
 from typing import Annotated
 
 import cv2
@@ -10,24 +9,24 @@ from cyclopts import Parameter
 
 from arena import Recording
 from arena.recordings.lens import Kind
-from cogmap.commands.common import Json, tell
+from cogmap.commands.common import Json, MaybePath, UserPath, tell
 
 
 def _import(
-    source: Path,
+    source: UserPath,
     /,
     *,
-    out: Path,
+    out: UserPath,
     kind: Kind | None = None,
     width: int | None = None,
     height: int | None = None,
     ahead: float = 0.0,
     clockwise: bool = True,
     mirror: Annotated[tuple[float, float, float, float] | None, Parameter(negative="")] = None,
-    times: Path | None = None,
+    times: MaybePath = None,
     rate: float | None = None,
-    poses: Path | None = None,
-    signals: Path | None = None,
+    poses: MaybePath = None,
+    signals: MaybePath = None,
     columns: Annotated[list[str] | None, Parameter(negative="", consume_multiple=True)] = None,
     log: Annotated[bool, Parameter(negative="")] = False,
     as_json: Json = False,

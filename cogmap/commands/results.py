@@ -8,7 +8,7 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from arena import Arena
-from cogmap.commands.common import Json, Seed, Told, tell
+from cogmap.commands.common import Json, MaybePath, Seed, Told, UserPath, tell
 from cogmap.errors import CogmapError
 from cogmap.experiments.demo import demo
 from cogmap.experiments.parameters import FAMILIES, build, by_family, parse, unknown
@@ -24,7 +24,7 @@ def _demo(
     views: int = 17_000,
     charts: int | None = None,
     seed: Seed = 0,
-    out: Path = Path("demo"),
+    out: UserPath = Path("demo"),
     as_json: Json = False,
 ) -> None:
     """Explore a room, learn from sight and smell, and show the cells that emerge.
@@ -76,7 +76,7 @@ def _experiment(
     arena: str | None = None,
     views: int | None = None,
     seed: Seed = 0,
-    out: Path | None = None,
+    out: MaybePath = None,
     told: Told = None,
     show: Annotated[bool, Parameter(name="--list", negative="")] = False,
     as_json: Json = False,
@@ -121,10 +121,10 @@ def _experiment(
 
 
 def _sweep(
-    plan: Path,
+    plan: UserPath,
     /,
     *,
-    out: Path,
+    out: UserPath,
     scheduler: str | None = None,
     workers: int | None = None,
     retry_failed: Annotated[bool, Parameter(negative="")] = False,
@@ -171,7 +171,7 @@ def _sweep(
     tell({"table": str(out / "table.csv"), **counts}, as_json=as_json)
 
 
-def _page(folder: Path, /, *, out: Path | None = None, as_json: Json = False) -> None:
+def _page(folder: UserPath, /, *, out: MaybePath = None, as_json: Json = False) -> None:
     """Show a result as one HTML page that needs nothing else: figures, tables, parameters, versions.
 
     Examples: `cogmap report demo`; `cogmap report rotation --out spin.html`.

@@ -16,7 +16,7 @@ from arena.bodies.catalogue import bodies
 from arena.motions.catalogue import motions
 from arena.recordings.judged import judged
 from cogmap.atomic import atomic_write
-from cogmap.commands.common import Json, Seed, Told, tell
+from cogmap.commands.common import Json, MaybePath, Seed, Told, UserPath, tell
 from cogmap.errors import CogmapError
 from cogmap.experiments.parameters import build, by_family, parse, unknown
 from cogmap.plots import plot_room, plot_sheet
@@ -26,9 +26,9 @@ def _arena(
     name: str | None = None,
     /,
     *,
-    out: Path | None = None,
-    sheet: Path | None = None,
-    view: Path | None = None,
+    out: MaybePath = None,
+    sheet: MaybePath = None,
+    view: MaybePath = None,
     pose: tuple[float, float, float] | None = None,
     width: int = 360,
     height: int = 60,
@@ -96,10 +96,10 @@ def _explore(
     arena: str,
     /,
     *,
-    out: Path,
+    out: UserPath,
     motion: Annotated[str, Parameter(help=f"How to move: {', '.join(motions())}.")] = "brownian",
     odorant: int | None = None,
-    path: Path | None = None,
+    path: MaybePath = None,
     fit: bool | None = None,
     views: int | None = None,
     camera: Literal["panoramic", "perspective", "overhead"] = "panoramic",

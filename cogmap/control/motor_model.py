@@ -192,7 +192,7 @@ class MotorModel:
         """
         arrays = {"gram": self._gram, "cross": self._cross, "noise": self.noise_}
         weights = {name: torch.from_numpy(array) for name, array in arrays.items()}
-        write_state(Path(path), weights, {}, {}, kind="motor")
+        write_state(path, weights, {}, {}, kind="motor")
 
     @classmethod
     def load(cls, path: str | Path) -> MotorModel:
@@ -203,7 +203,7 @@ class MotorModel:
         CogmapError
             When it is missing, damaged or of another version.
         """
-        weights, _, _ = read_state(Path(path), kind="motor")
+        weights, _, _ = read_state(path, kind="motor")
         try:
             loaded = cls(2 if len(weights["gram"]) > 4 else 1)
             loaded._gram, loaded._cross = weights["gram"].numpy(), weights["cross"].numpy()

@@ -14,7 +14,7 @@ from cogmap.control.posture_reaching import PostureReaching
 from cogmap.control.posture_ways import PostureWays
 from cogmap.control.visual_jacobian import VisualJacobian
 from cogmap.features.image_codes import sharp_codes
-from cogmap.inputs import check_array, check_views
+from cogmap.inputs import check_array, checked_views
 from cogmap.map.even_memory import EvenMemory
 
 KEPT = 4
@@ -69,7 +69,7 @@ class PostureReacher:
         """
         goal = np.asarray(goal)
         views = goal[None] if goal.ndim == 3 else goal
-        check_views(views, self.views.shape[1:])
+        views = checked_views(views, self.views.shape[1:])
         return PostureReaching(self, views, single=goal.ndim == 3)
 
     @cached_property

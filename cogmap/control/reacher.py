@@ -12,7 +12,7 @@ from cogmap.control.motor_model import MotorModel
 from cogmap.control.percept import MapPercept
 from cogmap.control.reaching import Reaching
 from cogmap.control.steering import Steering
-from cogmap.inputs import check_views
+from cogmap.inputs import checked_views
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.even_memory import EvenMemory
 from cogmap.navigation.place_graph import PlaceGraph
@@ -54,7 +54,7 @@ class Reacher:
         """
         goal = np.asarray(goal)
         views = goal[None] if goal.ndim == 3 else goal
-        check_views(views, self.cmap.view_shape_)
+        views = checked_views(views, self.cmap.view_shape_)
         single = goal.ndim == 3
         return Reaching(MapPercept(self.cmap), self.ways, self.steering, views, single=single)
 

@@ -21,7 +21,7 @@ from cogmap.coordinates.view_code import ViewCode
 from cogmap.errors import CogmapError
 from cogmap.features.seam import Eye
 from cogmap.graph.neighbour_graph import neighbour_graph
-from cogmap.inputs import check_views, checked_count
+from cogmap.inputs import checked_count, checked_views
 from cogmap.map.even_memory import EvenMemory
 from cogmap.map.storage import read_state, write_state
 from cogmap.shape.agreement import unless_lower_is_unresolved
@@ -111,7 +111,7 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
     def fit(self, views: Any, y: object = None) -> GeneralisedCoordinates:
         """Find degrees of freedom, loops and coordinates of views, (views, height, width, 3) uint8."""
         del y
-        check_views(views)
+        views = checked_views(views)
         if views.shape[0] < FEWEST:
             raise CogmapError(f"{views.shape[0]} views are too few to show a shape; give at least {FEWEST}")
         self._code = ViewCode(self.components, eye=self.eye, seed=self.seed).fit(views)
@@ -187,7 +187,7 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
             "reason": self.reason_,
             "betti": {name: value for name, value in asdict(self.betti_).items() if name != "bars"},
         }
-        write_state(Path(path), weights, self.get_params(), learnt, kind="coordinates")
+        write_state(path, weights, self.get_params(), learnt, kind="coordinates")
 
     @classmethod
     def load(cls, path: str | Path) -> GeneralisedCoordinates:
@@ -198,7 +198,7 @@ class GeneralisedCoordinates(TransformerMixin, BaseEstimator):
         CogmapError
             When it is missing, damaged or of another version.
         """
-        weights, settings, learnt = read_state(Path(path), kind="coordinates")
+        weights, settings, learnt = read_state(path, kind="coordinates")
         try:
             loaded = cls(**settings)
             arrays = {name: weight.numpy() for name, weight in weights.items() if name[:5] != "code."}

@@ -1,10 +1,12 @@
 """Heights: coordinates of a cloud along which it does not close, beside the phases of its loops."""
 
+import warnings
 from itertools import product
 
 import numpy as np
 from jaxtyping import Float
 
+from cogmap.errors import SeparatePiecesWarning
 from cogmap.shape.isomap import LandmarkIsomap
 
 HARMONICS = 3
@@ -40,7 +42,10 @@ def heights(
     """
     if not count:
         return np.empty((len(codes), 0))
-    isomap = LandmarkIsomap(2 * phases.shape[1] + count, one_sided=one_sided, seed=seed).fit(codes)
+    isomap = LandmarkIsomap(2 * phases.shape[1] + count, one_sided=one_sided, seed=seed)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", SeparatePiecesWarning)  # the others get NaN
+        isomap.fit(codes)
     known = isomap.pieces_.labels == 0
     turns = [
         phases[known] @ np.array(times)

@@ -13,7 +13,7 @@ from torch import Tensor
 
 from cogmap.features.image_codes import HEIGHT, WIDTH, image_codes
 from cogmap.features.seam import Eye, wraps_around
-from cogmap.inputs import check_choice, check_views, checked_count
+from cogmap.inputs import check_choice, checked_count, checked_views
 from cogmap.threads import one_thread
 from neurons.layers.retina import Retina
 from neurons.layers.sanger import Sanger
@@ -70,7 +70,7 @@ class ViewCode:
         CogmapError
             For views that are not uint8 images, an unknown eye, no components.
         """
-        check_views(views)
+        views = checked_views(views)
         components = checked_count("components", self.components)
         if self.eye is not None:
             check_choice("eye", self.eye, get_args(Eye))
@@ -94,7 +94,7 @@ class ViewCode:
         CogmapError
             For other views than it was fitted to.
         """
-        check_views(views, self.view_shape_)
+        views = checked_views(views, self.view_shape_)
         with one_thread():
             parts = [self._layer(self._see(views[rows])) for rows in gen_batches(views.shape[0], BATCH)]
             return torch.cat(parts).numpy()

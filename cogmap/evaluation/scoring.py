@@ -8,16 +8,16 @@ from sklearn.metrics import r2_score
 
 from cogmap.cells.decoding.decoders import fit_heading_frame, fit_map_frame, heading_errors, place_map
 from cogmap.evaluation.ground_truth import CellMetrics, GroundTruth
-from cogmap.inputs import check_array
+from cogmap.inputs import AnyArray, checked_array
 from cogmap.map.activity import Activity
 
 
 def score(
     activity: Activity,
-    poses: Float[np.ndarray, "views 3"],
+    poses: AnyArray,
     *,
-    train: tuple[Activity, Float[np.ndarray, "train 3"]],
-    reachable: Float[np.ndarray, "points 2"] | None = None,
+    train: tuple[Activity, AnyArray],
+    reachable: AnyArray | None = None,
     cells: tuple[CellMetrics, CellMetrics] | None = None,
 ) -> dict[str, float]:
     """Every figure that activity gives, as one flat record.
@@ -53,11 +53,13 @@ def score(
     CogmapError
         For values that are not finite or shapes that do not fit.
     """
-    activity_train, poses_train = train
-    check_array("poses", poses, (len(activity.place), 3))
-    check_array("training poses", poses_train, (len(activity_train.odour), 3))
+    activity_train = train[0]
+    poses = checked_array("poses", poses, (len(activity.place), 3))
+    poses_train = checked_array("training poses", train[1], (len(activity_train.odour), 3))
     positions = poses[:, :2]
-    room = np.concatenate([positions, poses_train[:, :2]]) if reachable is None else reachable
+    room = np.concatenate([positions, poses_train[:, :2]])
+    if reachable is not None:
+        room = checked_array("reachable", reachable, (None, 2))
     truth = GroundTruth(poses_train, poses, room)
     place, heading = cells or (CellMetrics(activity.place, truth), CellMetrics(activity.heading, truth))
     figures = {
@@ -68,7 +70,7 @@ def score(
     # Without a compass no cell passes, and there is no heading to be wrong.
     lost = np.isnan(activity.phase).all()
     figures["heading_cells_passing"] = 0.0 if lost else float(heading.heading["passing"].mean())
-    figures |= _pose_figures(activity, poses, train)
+    figures |= _pose_figures(activity, poses, (activity_train, poses_train))
     if activity.plain is not None and activity_train.plain is not None:
         plain = _pose_figures(activity.plain, poses, (activity_train.plain, poses_train))
         figures |= {f"plain_{name}": value for name, value in plain.items()}

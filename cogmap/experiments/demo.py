@@ -25,7 +25,7 @@ from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.provenance import write_provenance
 from cogmap.experiments.result import Result
 from cogmap.experiments.trial import Trial
-from cogmap.inputs import checked_count
+from cogmap.inputs import Whole, checked_count
 from cogmap.map.diagnosis import Diagnosis
 from cogmap.shape.homology import Betti
 
@@ -35,12 +35,12 @@ LANDMARKS = (400, 150)
 
 def demo(
     room: Arena,
-    out: Path | None,
+    out: str | Path | None,
     *,
-    views: int = 17_000,
-    charts: int | None = None,
+    views: Whole = 17_000,
+    charts: Whole | None = None,
     landmarks: tuple[int, int] = LANDMARKS,
-    seed: int = 0,
+    seed: Whole = 0,
     progress: bool = False,
 ) -> dict[str, Any]:
     """Explore, learn, score on a fresh walk, measure the topology, and draw.
@@ -75,8 +75,8 @@ def demo(
     ArenaError, CogmapError
         For a room or counts that cannot work, or a folder that holds something else.
     """
-    checked_count("views", views, 20)
-    charts = usual_charts(views) if charts is None else charts
+    views, seed = checked_count("views", views, 20), checked_count("seed", seed, 0)
+    charts = usual_charts(views) if charts is None else checked_count("charts", charts)
     seconds: dict[str, float] = {}
     clock = partial(_timed, seconds)
     with nullcontext() if out is None else result_folder(out) as folder, TemporaryDirectory() as scratch:

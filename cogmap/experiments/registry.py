@@ -13,12 +13,12 @@ from typing import Any, NamedTuple, TypeVar
 
 from arena import Arena
 from arena.registry import modules_of
-from cogmap.atomic import result_folder
+from cogmap.atomic import result_folder, user_path
 from cogmap.errors import CogmapError
 from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.provenance import write_provenance
 from cogmap.experiments.result import Result
-from cogmap.inputs import check_choice, checked_count
+from cogmap.inputs import Whole, check_choice, checked_count
 
 FEWEST = 200
 """Views that every experiment can do with, if not well."""
@@ -113,13 +113,13 @@ def listing() -> list[dict[str, str]]:
 
 def run_experiment(
     name: str,
-    out: Path | None = None,
+    out: str | Path | None = None,
     *,
     room: Arena | None = None,
-    views: int | None = None,
-    seed: int = 0,
+    views: Whole | None = None,
+    seed: Whole = 0,
     progress: bool = False,
-    library: Path | None = None,
+    library: str | Path | None = None,
     **overrides: Any,
 ) -> Result:
     """Run an experiment by its name.
@@ -158,6 +158,7 @@ def run_experiment(
         if what not in chosen.takes:
             takes = ", ".join(chosen.takes) or "nothing but room, views and seed"
             raise CogmapError(f"{name} does not take another {what}; it takes {takes}")
+    seed, library = checked_count("seed", seed, 0), None if library is None else user_path(library)
     views = chosen.views if views is None else checked_count("views", views, FEWEST)
     names = (chosen.room, *chosen.extra_rooms)
     room, *extra_rooms = [Arena.load(name) for name in names] if room is None else [room]

@@ -16,7 +16,7 @@ from tqdm import tqdm
 
 from cogmap.features.descriptors import Descriptors, keypoints, patches
 from cogmap.features.vocabulary import learn_words, nearest_words
-from cogmap.inputs import check_views, checked_count
+from cogmap.inputs import checked_count, checked_views
 from cogmap.threads import one_thread
 
 Images = UInt8[np.ndarray, "images height width 3"]
@@ -98,7 +98,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
     def fit_transform(self, X: Any, y: object = None) -> sp.csr_array:
         """Learn the words of views, and give those that each shows: float32 (views, words + colours)."""
         del y
-        check_views(X)
+        X = checked_views(X)
         counts = checked_count("words", self.words), checked_count("colours", self.colours)
         seed = checked_count("seed", self.seed, 0)
         blocks = list(gen_batches(X.shape[0], BLOCK))
@@ -122,7 +122,7 @@ class BagOfWords(TransformerMixin, BaseEstimator):
     def transform(self, X: Any) -> sp.csr_array:
         """Give the words that each view shows: float32 (views, words + colours)."""
         check_is_fitted(self)
-        check_views(X)
+        X = checked_views(X)
         with self._bar(X) as bar, one_thread():
             blocks = list(gen_batches(X.shape[0], BLOCK))
             shown = list(self._over(partial(_read, words=self._words), X, blocks, bar))

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float32
 from sklearn.utils import gen_batches
 
-from cogmap.inputs import check_views
+from cogmap.inputs import checked_views
 from cogmap.threads import one_thread
 
 WIDTH, HEIGHT = 20, 15
@@ -35,7 +35,7 @@ def image_codes(
     CogmapError
         For views that are not uint8 images (views, height, width, 3).
     """
-    check_views(views)
+    views = checked_views(views)
     codes = np.empty((views.shape[0], 3 * width * height), np.float32)
     with one_thread():
         for block in gen_batches(len(codes), 256):

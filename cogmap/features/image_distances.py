@@ -8,7 +8,7 @@ from jaxtyping import Float
 from sklearn.utils import gen_batches
 
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_views
+from cogmap.inputs import checked_views
 
 Distances = Float[np.ndarray, "queries views"]
 
@@ -99,8 +99,8 @@ def _cumulative_light(strips: np.ndarray) -> Float[np.ndarray, "views columns co
 
 
 def _check_pair(queries: Any, views: Any) -> None:
-    check_views(queries)
-    check_views(views)
+    queries = checked_views(queries)
+    views = checked_views(views)
     if tuple(queries.shape[1:]) != tuple(views.shape[1:]):
         raise CogmapError(
             f"queries have shape {tuple(queries.shape[1:])} and views {tuple(views.shape[1:])}; "

@@ -4,7 +4,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from cogmap.inputs import check_views
+from cogmap.inputs import checked_views
 
 Eye = Literal["panorama", "perspective"]
 """What a camera makes of the world: a strip all around, or a picture with borders."""
@@ -61,7 +61,7 @@ def seam_is_open(views: Any) -> bool:
 
 def _likeness_of_neighbours(views: Any) -> tuple[float, float]:
     """Correlate what changes in the last and the first column, and in other neighbours (median)."""
-    check_views(views)
+    views = checked_views(views)
     chosen = np.unique(np.linspace(0, views.shape[0] - 1, min(LOOKED_AT, views.shape[0])).astype(int))
     deviation = np.stack([np.asarray(views[int(view)], np.float32) for view in chosen])
     deviation -= deviation.mean(axis=0)

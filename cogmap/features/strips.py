@@ -7,7 +7,7 @@ from jaxtyping import Complex64, Float32
 from scipy import fft
 
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_views
+from cogmap.inputs import checked_views
 
 FREQUENCIES = 31
 """Kept: of constant to 30 periods around the circle."""
@@ -32,7 +32,7 @@ def strips(views: Any) -> Strips:
     CogmapError
         For views that are not uint8 images, or narrower than 62 columns.
     """
-    check_views(views)
+    views = checked_views(views)
     count, height, width, _ = views.shape
     if width < 2 * FREQUENCIES:
         raise CogmapError(f"panoramas are {width} columns wide; give at least {2 * FREQUENCIES}")

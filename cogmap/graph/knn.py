@@ -11,9 +11,9 @@ from sklearn.preprocessing import normalize
 from threadpoolctl import get_cached_controller
 
 from cogmap.errors import CogmapError
-from cogmap.graph.points import Checked, Cloud, checked_cloud
+from cogmap.graph.points import AnyCloud, Checked, checked_cloud
 from cogmap.graph.top_k import offer
-from cogmap.inputs import check_choice, checked_count
+from cogmap.inputs import Whole, check_choice, checked_count
 
 Metric = Literal["euclidean", "cosine"]
 """What distance is between points.
@@ -39,10 +39,10 @@ class Nearest(NamedTuple):
 
 
 def nearest_points(
-    cloud: Cloud,
-    neighbours: int,
+    cloud: AnyCloud,
+    neighbours: Whole,
     *,
-    queries: Cloud | None = None,
+    queries: AnyCloud | None = None,
     metric: Metric = "euclidean",
     exact: int = 50_000,
 ) -> Nearest:
@@ -76,7 +76,7 @@ def nearest_points(
     """
     cloud = checked_cloud(cloud)
     others = None if queries is None else checked_cloud(queries)
-    checked_count("neighbours", neighbours)
+    neighbours = checked_count("neighbours", neighbours)
     check_choice("metric", metric, get_args(Metric))
     if others is not None and others.shape[1] != cloud.shape[1]:
         raise CogmapError(

@@ -1,5 +1,6 @@
 """Neighbour graphs: who is next to whom in a cloud."""
 
+import warnings
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -8,9 +9,10 @@ import scipy.sparse as sp
 from jaxtyping import Bool, Int
 from scipy.sparse.csgraph import connected_components
 
-from cogmap.errors import CogmapError
+from cogmap.errors import CogmapError, SeparatePiecesWarning
 from cogmap.graph.knn import Metric, nearest_points
-from cogmap.graph.points import Cloud, checked_cloud, distinct
+from cogmap.graph.points import AnyCloud, as_rows, checked_cloud, distinct
+from cogmap.inputs import Whole
 
 SMALLEST = float(np.finfo(np.float64).tiny)
 """Length of an edge between equal points: adds nothing to a path, yet is an edge, where a zero is none."""
@@ -30,7 +32,7 @@ class Components(NamedTuple):
 
 
 def neighbour_graph(
-    X: Cloud, neighbours: int = 15, *, metric: Metric = "euclidean", one_sided: int | None = None
+    X: AnyCloud, neighbours: Whole = 15, *, metric: Metric = "euclidean", one_sided: int | None = None
 ) -> sp.csr_array:
     """Join every point to its nearest neighbours by edges as long as they are apart.
 
@@ -61,12 +63,12 @@ def neighbour_graph(
     CogmapError
         When X is not a finite matrix or has no more distinct points than `neighbours`.
     """
-    (graph,) = neighbour_graphs(X, (neighbours,), metric=metric, one_sided=one_sided)
+    (graph,) = neighbour_graphs(X, (int(neighbours),), metric=metric, one_sided=one_sided)
     return graph
 
 
 def neighbour_graphs(
-    X: Cloud, counts: Sequence[int], *, metric: Metric = "euclidean", one_sided: int | None = None
+    X: AnyCloud, counts: Sequence[int], *, metric: Metric = "euclidean", one_sided: int | None = None
 ) -> list[sp.csr_array]:
     """Make the `neighbour_graph` of each of several numbers of neighbours, for which it searches but once."""
     fewest, most = min(counts), max(counts)
@@ -79,7 +81,8 @@ def neighbour_graphs(
             "give more points or ask for fewer neighbours"
         )
     nearest = nearest_points(points, most, metric=metric)
-    repeats = np.setdiff1d(np.arange(X.shape[0]), first)
+    count = len(same.ravel())
+    repeats = np.setdiff1d(np.arange(count), first)
     graphs = []
     for neighbours in counts:
         ends, lengths = nearest.indices[:, :neighbours], nearest.distances[:, :neighbours]
@@ -90,7 +93,7 @@ def neighbour_graphs(
         columns = np.concatenate([first[ends[found]], first[same.ravel()[repeats]]])
         # Distinct points can be nearer than rounding tells; the edge must survive that.
         values = np.concatenate([np.maximum(lengths[found], SMALLEST), np.full(len(repeats), SMALLEST)])
-        graph = sp.csr_array((values.astype(np.float64), (rows, columns)), shape=(X.shape[0], X.shape[0]))
+        graph = sp.csr_array((values.astype(np.float64), (rows, columns)), shape=(count, count))
         graphs.append(sp.csr_array(graph.maximum(graph.T)))
     return graphs
 
@@ -152,20 +155,43 @@ def edge_differences(
     return sp.csr_array((signs, (np.tile(edges, 2), np.concatenate([starts, ends]))), (len(starts), points))
 
 
-def checked_graph(graph: sp.csr_array) -> sp.csr_array:
+def warn_of_pieces(pieces: Components, so: str) -> None:
+    """Warn of a graph in pieces, where a user would not see it otherwise; `so` says what comes of it.
+
+    The warning is told to be of who called the function that calls this one.
+    """
+    if pieces.number > 1:
+        largest = ", ".join(map(str, pieces.sizes[:3])) + (", …" if pieces.number > 3 else "")
+        warnings.warn(
+            f"the neighbour graph falls into {pieces.number} pieces (of {largest} points): {so}; "
+            "ask for more neighbours, or explore between them",
+            SeparatePiecesWarning,
+            stacklevel=3,
+        )
+
+
+def checked_graph(given: AnyCloud) -> sp.csr_array:
     """Pass a symmetric graph of positive lengths through, without the zeros it may store.
+
+    Lengths there and back that differ by rounding become their mean.
 
     Raises
     ------
     CogmapError
         When it is not square, not symmetric, or has a length that is not positive and finite.
     """
-    graph = graph.astype(np.float64)
+    graph = sp.csr_array(as_rows("the graph", given)).astype(np.float64)
     graph.eliminate_zeros()
     if graph.shape[0] != graph.shape[1]:
         raise CogmapError(f"the graph has shape {graph.shape}; expected a square, (points, points)")
     if not (np.isfinite(graph.data) & (graph.data > 0)).all():
         raise CogmapError("the graph has lengths that are not positive and finite; leave those edges out")
-    if abs(graph - graph.T).nnz:
-        raise CogmapError("the graph is not symmetric; give each edge its length in both directions")
-    return graph
+    skew = abs(graph - graph.T)
+    if not skew.nnz:
+        return graph
+    if (skew - 1e-6 * graph.maximum(graph.T)).max() > 0:
+        raise CogmapError(
+            f"the graph is not symmetric, lengths there and back differ by up to {skew.max():g}; "
+            "give each edge its length in both directions"
+        )
+    return sp.csr_array((graph + graph.T) / 2)

@@ -1,16 +1,19 @@
 """Point clouds: one row a point, dense or sparse."""
 
 from itertools import pairwise
-from typing import NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import scipy.sparse as sp
 from jaxtyping import Float, Int, Num
 
 from cogmap.errors import CogmapError
+from cogmap.inputs import AnyArray, as_array, as_floats
 
 Cloud: TypeAlias = Num[np.ndarray, "_ ..."] | sp.csr_array
 """One row per point, (points, features), as a matrix or as sparse rows."""
+AnyCloud: TypeAlias = AnyArray | sp.sparray | sp.spmatrix
+"""The same as people have it: whatever holds numbers, or is sparse."""
 Checked: TypeAlias = Float[np.ndarray, "_ _"] | sp.csr_array
 """A cloud that `checked_cloud` has passed."""
 
@@ -25,25 +28,40 @@ class Distinct(NamedTuple):
     """Which of them each point of the cloud is."""
 
 
-def checked_cloud(X: Cloud) -> Checked:
+def checked_cloud(X: AnyCloud) -> Checked:
     """Pass a finite matrix through as floats; sparse rows get canonical, and are copied if they were not.
 
     Raises
     ------
     CogmapError
-        When X has not two axes, no features, or a value that is not finite.
+        When X holds no numbers, has not two axes, no features, or a value that is not finite.
     """
-    if X.ndim != 2 or X.shape[1] == 0:
-        raise CogmapError(f"the cloud has shape {X.shape}; expected one row per point, (points, features)")
-    if not np.isfinite(X.data if sp.issparse(X) else X).all():
+    cloud = as_rows("the cloud", X)
+    if cloud.ndim != 2 or cloud.shape[1] == 0:
+        raise CogmapError(
+            f"the cloud has shape {cloud.shape}; expected one row per point, (points, features)"
+        )
+    if not np.isfinite(cloud if isinstance(cloud, np.ndarray) else cloud.data).all():
         raise CogmapError("the cloud holds NaN or infinite values; remove those points first")
-    if sp.issparse(X):
-        X = sp.csr_array(X)
-        if not X.has_canonical_format or not X.data.all():
-            X = X.copy()
-            X.sum_duplicates()
-            X.eliminate_zeros()
-    return X if np.issubdtype(X.dtype, np.floating) else X.astype(np.float64)
+    if isinstance(cloud, np.ndarray):
+        return as_floats(cloud)
+    if not cloud.has_canonical_format or not cloud.data.all():
+        cloud = cloud.copy()
+        cloud.sum_duplicates()
+        cloud.eliminate_zeros()
+    return cloud if cloud.dtype in (np.float32, np.float64) else cloud.astype(np.float64)
+
+
+def as_rows(name: str, X: Any) -> np.ndarray | sp.csr_array:
+    """Make an array of whatever holds numbers, and sparse rows of what is sparse.
+
+    Raises
+    ------
+    CogmapError
+        For what holds no numbers.
+    """
+    sparse = sp.issparse(X)
+    return sp.csr_array(X) if sparse else as_array(name, X)
 
 
 def distinct(X: Checked) -> Distinct:

@@ -19,7 +19,7 @@ from cogmap.imagination.painter import Painter, Turned
 from cogmap.imagination.places import RememberedPlaces
 from cogmap.imagination.stroll import stroll
 from cogmap.imagination.surprise import ALARM, NOTABLE, Surprise
-from cogmap.inputs import check_array, check_choice, check_views, checked_count
+from cogmap.inputs import check_array, check_choice, checked_count, checked_views
 from cogmap.map.activity import Activity
 from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.map.even_memory import EvenMemory
@@ -245,7 +245,7 @@ class Imagination:
     def places(self) -> RememberedPlaces:
         """What is remembered, where the map perceives it."""
         views = self.memory.views_ if isinstance(self.memory, EvenMemory) else self.memory
-        check_views(views, self.cmap.view_shape_)
+        views = checked_views(views, self.cmap.view_shape_)
         return RememberedPlaces.of(views, self._perceived(views))
 
     @cached_property
@@ -288,7 +288,7 @@ class Imagination:
         CogmapError
             For views of another size, of one colour, or of nowhere that is remembered.
         """
-        check_views(views, self.cmap.view_shape_)
+        views = checked_views(views, self.cmap.view_shape_)
         for index, view in enumerate(views):
             if not np.ptp(view.reshape(-1, 3), axis=0).any():
                 raise CogmapError(f"view {index} is of one colour and shows no place; give another")
@@ -307,7 +307,7 @@ class Imagination:
         return Comparison(self._painter, self.sources)
 
     def _poses(self, views: Any) -> Float[np.ndarray, "views 3"]:
-        check_views(views, self.cmap.view_shape_)
+        views = checked_views(views, self.cmap.view_shape_)
         seen = self._perceived(views)
         return np.column_stack([seen.position, seen.phase]).astype(np.float64)
 

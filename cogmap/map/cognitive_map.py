@@ -14,12 +14,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import torch
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 from torch import Tensor
 from tqdm import tqdm
 
 from cogmap.errors import CogmapError, UntrustedMapWarning
-from cogmap.inputs import check_views, checked_count, log_odours
+from cogmap.inputs import (
+    AnyArray,
+    Whole,
+    check_choice,
+    checked_count,
+    checked_number,
+    checked_views,
+    log_odours,
+)
 from cogmap.map.activity import Activity
 from cogmap.map.device import checked_device
 from cogmap.map.diagnosis import Counted, Diagnosis, Verdict, topology_verdict
@@ -43,7 +50,7 @@ RELAXED = "relaxed_places."
 """How what `refine` has learnt is called among the weights of a saved map."""
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class CognitiveMap:
     """A map of a place, learnt from sight and smell alone.
 
@@ -110,20 +117,55 @@ class CognitiveMap:
         For views or odours of the wrong shape, type or range, counts below 1, or a device that is not there.
     """
 
-    charts: int = 3000
-    components: int = 60
+    charts: Whole = 3000
+    components: Whole = 60
     _: KW_ONLY
-    most_charts: int | None = None
-    place_cells: int = 150
-    heading_cells: int = 60
-    smell: float = 0.5
-    smell_first: bool = False
+    most_charts: Whole | None = None
+    place_cells: Whole = 150
+    heading_cells: Whole = 60
+    smell: float | Whole | np.floating = 0.5
+    smell_first: bool | np.bool = False
     eye: str | None = None
-    epoch: int = 17_000
-    seed: int = 0
+    epoch: Whole = 17_000
+    seed: Whole = 0
     device: str = "cpu"
 
-    def fit(self, views: Any, odours: ArrayLike | None = None, *, progress: bool = False) -> CognitiveMap:
+    def __repr__(self) -> str:
+        told = ((field.name, getattr(self, field.name), field.default) for field in fields(self))
+        unusual = (f"{name}={value!r}" for name, value, usual in told if value != usual)
+        blank = f"CognitiveMap({', '.join(unusual)})"
+        if not hasattr(self, "_network"):
+            return blank
+        height, width, _ = self.view_shape_
+        verdict = self._network.unfinished or self.reason_
+        return (
+            f"<{blank} that has learnt from views of {height}×{width} pixels and {self.odorants_} odorants: "
+            f"{verdict or 'trusted'}>"
+        )
+
+    def get_params(self, *, deep: bool = True) -> dict[str, Any]:
+        """Give the parameters by name; `sklearn.base.clone` makes a map of them that has learnt nothing."""
+        del deep  # none of them has parameters of its own
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    def set_params(self, **params: Any) -> CognitiveMap:
+        """Change parameters of a map that has learnt nothing yet.
+
+        Raises
+        ------
+        CogmapError
+            For a parameter that there is not, or a map that has learnt with others.
+        """
+        known = self.get_params()
+        for name in params:
+            check_choice("parameter", name, tuple(known))
+        if params and hasattr(self, "_network"):
+            raise CogmapError("this map has learnt with other parameters; change those of a blank one")
+        for name, value in params.items():
+            setattr(self, name, value)
+        return self
+
+    def fit(self, views: Any, odours: AnyArray | None = None, *, progress: bool = False) -> CognitiveMap:
         """Learn a map from scratch, as epochs of `partial_fit` over the views.
 
         Their order is random in every epoch but those of stages that learn from it, as the metric map does.
@@ -131,13 +173,14 @@ class CognitiveMap:
         Parameters
         ----------
         views
-            (views, height, width, 3) uint8; an array, or anything lazy whose slices are arrays.
+            (views, height, width, 3) uint8; an array, a tensor, a list of images, or anything lazy whose
+            slices are arrays.
         odours
             (views, odorants) concentrations > 0; None for sight alone.
         progress
             Whether to show a bar on stderr.
         """
-        check_views(views)
+        views = checked_views(views)
         logs = self._smelt(odours, views.shape[0], None)
         if views.shape[0] < checked_count("charts", self.charts):
             raise CogmapError(
@@ -173,7 +216,7 @@ class CognitiveMap:
                 bar.refresh()
         return self
 
-    def partial_fit(self, views: Any, odours: ArrayLike | None = None, *, jump: bool = False) -> CognitiveMap:
+    def partial_fit(self, views: Any, odours: AnyArray | None = None, *, jump: bool = False) -> CognitiveMap:
         """Learn from the next views of a stream.
 
         Time and memory per view do not depend on how many came before. See `neurons.network.Network` for what
@@ -188,7 +231,7 @@ class CognitiveMap:
             Whether these views do not follow the last ones, as where another walk begins.
         """
         fresh = not hasattr(self, "_network")
-        check_views(views, None if fresh else self.view_shape_)
+        views = checked_views(views, None if fresh else self.view_shape_)
         logs = self._smelt(odours, views.shape[0], None if fresh else self.odorants_)
         if fresh:
             epoch = checked_count("epoch", self.epoch)
@@ -247,7 +290,7 @@ class CognitiveMap:
             merge(self._grown, other._grown)
         return self
 
-    def perceive(self, views: Any = None, *, odours: ArrayLike | None = None) -> Activity:
+    def perceive(self, views: Any = None, *, odours: AnyArray | None = None) -> Activity:
         """Let the map look at views, smell odours in the dark, which tells place only, or both at once.
 
         With both, smell picks among the charts that look alike; what they recall is told from sight as ever.
@@ -263,7 +306,7 @@ class CognitiveMap:
                 raise CogmapError("give views, odours for a look in the dark, or both")
             self._check_nose()
             return self._sniff(log_odours(odours, odorants=self.odorants_))
-        check_views(views, self.view_shape_)
+        views = checked_views(views, self.view_shape_)
         logs = None
         if odours is not None:
             self._check_nose()
@@ -322,7 +365,7 @@ class CognitiveMap:
     def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
         """Give the principal components of views, the space of the view manifold, float32."""
         network = self._grown
-        check_views(views, self.view_shape_)
+        views = checked_views(views, self.view_shape_)
         with one_thread(self._device):
             return torch.cat([network.code(strip) for _, strip in self._strips(views)]).cpu().numpy()
 
@@ -407,12 +450,13 @@ class CognitiveMap:
             "charts": len(network.charts),
             "tangents": network.charts.dimensions,
         }
-        settings = {field.name: getattr(self, field.name) for field in fields(self) if field.name != "device"}
+        settings = self.get_params()
+        del settings["device"]
         weights = network.state_dict()
         if self.relaxed_places_ is not None:
             state = self.relaxed_places_.state()
             weights |= {RELAXED + name: torch.from_numpy(array) for name, array in state.items()}
-        write_state(Path(path), weights, settings, learnt)
+        write_state(path, weights, settings, learnt)
 
     @classmethod
     def load(cls, path: str | Path, *, device: str = "cpu") -> CognitiveMap:
@@ -423,7 +467,7 @@ class CognitiveMap:
         CogmapError
             When it is missing, damaged or of another version, or the device is not there.
         """
-        weights, settings, learnt = read_state(Path(path))
+        weights, settings, learnt = read_state(path)
         try:
             loaded = cls(**settings, device=device)
             loaded._begin(
@@ -453,8 +497,9 @@ class CognitiveMap:
     ) -> None:
         first = checked_count("charts", self.charts)
         most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
-        if not 0 <= self.smell < np.inf:
-            raise CogmapError(f"smell is {self.smell!r}; give a number of at least 0, how much it counts")
+        checked_count("epoch", self.epoch)
+        if not isinstance(self.smell_first, bool | np.bool):
+            raise CogmapError(f"smell_first is {self.smell_first!r}; give True or False")
         self._device = checked_device(self.device)
         self._retina = Retina(*view_shape[:2], **RETINAS[eye]).to(self._device)
         self.view_shape_, self.odorants_, self.eye_ = view_shape, odorants, eye
@@ -470,7 +515,7 @@ class CognitiveMap:
                 components=checked_count("components", self.components, 4),
                 place_cells=checked_count("place_cells", self.place_cells),
                 heading_cells=checked_count("heading_cells", self.heading_cells),
-                smell=self.smell,
+                smell=checked_number("smell", self.smell),
                 epoch=epoch,
                 stages=stages if odorants else SIGHT_ALONE,
                 # drawn on the processor: the same initial weights on every device
@@ -480,7 +525,7 @@ class CognitiveMap:
 
     @staticmethod
     def _smelt(
-        odours: ArrayLike | None, views: int, odorants: int | None
+        odours: AnyArray | None, views: int, odorants: int | None
     ) -> Float[np.ndarray, "views odorants"]:
         """Give log odours to learn from; of no odorants where there are none."""
         if odours is None and not odorants:

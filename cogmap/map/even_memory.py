@@ -100,7 +100,7 @@ class EvenMemory:
             When something is at the path already, it cannot be written, or nothing was seen yet.
         """
         weights = {name: torch.from_numpy(array[: len(self)]) for name, array in self._state.items()}
-        write_state(Path(path), weights, {"size": self.size}, {"seen": self.seen_}, kind="memory")
+        write_state(path, weights, {"size": self.size}, {"seen": self.seen_}, kind="memory")
 
     @classmethod
     def load(cls, path: str | Path) -> EvenMemory:
@@ -111,7 +111,7 @@ class EvenMemory:
         CogmapError
             When it is missing, damaged or of another version.
         """
-        weights, settings, learnt = read_state(Path(path), kind="memory")
+        weights, settings, learnt = read_state(path, kind="memory")
         try:
             loaded = cls(**settings)
             loaded._begin(weights["views"].numpy(), weights["codes"].numpy())

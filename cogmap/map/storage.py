@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import Any, Literal
 
 import google_crc32c
+import numpy as np
 from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
-from cogmap.atomic import atomic_write
+from cogmap.atomic import atomic_write, user_path
 from cogmap.digests import digest
 from cogmap.errors import CogmapError
 
@@ -20,7 +21,7 @@ WEIGHTS = "weights.safetensors"
 
 
 def write_state(
-    path: Path,
+    path: str | Path,
     weights: Mapping[str, Tensor],
     settings: Mapping[str, Any],
     learnt: Mapping[str, Any],
@@ -31,18 +32,25 @@ def write_state(
     kept = {name: weight.cpu().contiguous() for name, weight in weights.items()}
     described: dict[str, Any] = {
         "version": VERSIONS[kind],
-        "settings": dict(settings),
+        "settings": {name: _plain(value) for name, value in settings.items()},
         "learnt": dict(learnt),
         "weights": {name: _checksum(weight) for name, weight in kept.items()},
     }
     described["digest"] = digest(described)
-    with atomic_write(path, overwrite=False) as folder:
+    with atomic_write(user_path(path), overwrite=False) as folder:
         folder.mkdir()
         save_file(kept, folder / WEIGHTS)
         (folder / f"{kind}.json").write_text(json.dumps(described, indent=2) + "\n", encoding="utf-8")
 
 
-def read_state(path: Path, *, kind: Kind = "map") -> tuple[dict[str, Tensor], dict[str, Any], dict[str, Any]]:
+def _plain(value: Any) -> Any:
+    """Give a number of numpy's as Python's, which JSON knows."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def read_state(
+    path: str | Path, *, kind: Kind = "map"
+) -> tuple[dict[str, Tensor], dict[str, Any], dict[str, Any]]:
     """Read weights, settings and what was learnt about the input, each compared with its checksum.
 
     Raises
@@ -50,6 +58,7 @@ def read_state(path: Path, *, kind: Kind = "map") -> tuple[dict[str, Tensor], di
     CogmapError
         When it is missing, of another version or no longer what was written, with what it is that is damaged.
     """
+    path = user_path(path)
     try:
         described = json.loads((path / f"{kind}.json").read_text(encoding="utf-8"))
         weights = load_file(path / WEIGHTS)

@@ -12,8 +12,8 @@ from jaxtyping import Float, Int
 
 from cogmap.errors import CogmapError
 from cogmap.graph.knn import Metric, nearest_points
-from cogmap.graph.points import Cloud, checked_cloud
-from cogmap.inputs import checked_count
+from cogmap.graph.points import AnyCloud, checked_cloud
+from cogmap.inputs import AnyArray, Whole, checked_count
 from cogmap.navigation.panorama_localiser import PanoramaLocaliser
 from cogmap.navigation.weighing import Weighing, choose_weighing
 
@@ -57,10 +57,10 @@ class Localiser:
         From `locate`, for arrays that are not finite or do not fit each other.
     """
 
-    features: Cloud
+    features: AnyCloud
     _: KW_ONLY
-    codes: Float[np.ndarray, "views codes"] | None = None
-    neighbours: int | None = None
+    codes: AnyArray | None = None
+    neighbours: Whole | None = None
     ridge: float = 1e-4
     metric: Metric = "cosine"
 
@@ -78,32 +78,34 @@ class Localiser:
     @cached_property
     def weighing(self) -> Weighing:
         """How views are weighed: as told, or as suits the remembered ones."""
-        views = self.features.shape[0]
+        features = checked_cloud(self.features)
+        views = features.shape[0]
         if self.neighbours is not None:
             return Weighing(
                 regressed=True, neighbours=min(checked_count("neighbours", self.neighbours), views)
             )
         known = None if self.codes is None else _codes(self.codes, views)
-        return choose_weighing(checked_cloud(self.features), known, self.ridge, self.metric)
+        return choose_weighing(features, known, self.ridge, self.metric)
 
-    def locate(self, query: Cloud, *, codes: Float[np.ndarray, "queries codes"] | None = None) -> Location:
+    def locate(self, query: AnyCloud, *, codes: AnyArray | None = None) -> Location:
         """Place views given by their features, (queries, features), and codes if the remembered have any."""
         if (codes is None) != (self.codes is None):
             raise CogmapError("give codes of both the remembered views and the query, or of neither")
         if not self.ridge > 0:
             raise CogmapError(f"ridge is {self.ridge}; give a number above 0")
-        train = _codes(self.features if self.codes is None else self.codes, self.features.shape[0])
+        features, query = checked_cloud(self.features), checked_cloud(query)
+        train = _codes(features if self.codes is None else self.codes, features.shape[0])
         test = _codes(query if codes is None else codes, query.shape[0])
         if train.shape[1] != test.shape[1]:
             raise CogmapError(
                 f"codes of the query have {test.shape[1]} features but those of the views {train.shape[1]}; "
                 "make both alike"
             )
-        near = nearest_points(self.features, self.weighing.neighbours, queries=query, metric=self.metric)
+        near = nearest_points(features, self.weighing.neighbours, queries=query, metric=self.metric)
         return Location(near.indices, self.weighing.weigh(near, train, test, self.ridge))
 
 
-def _codes(codes: Cloud, views: int) -> Float[np.ndarray, "views codes"]:
+def _codes(codes: AnyCloud, views: int) -> Float[np.ndarray, "views codes"]:
     checked = checked_cloud(codes)
     if checked.shape[0] != views:
         raise CogmapError(f"there are {checked.shape[0]} codes but {views} views; give one code per view")

@@ -12,7 +12,7 @@ from cogmap.features.panorama import PanoramaCode
 from cogmap.features.seam import wraps_around
 from cogmap.features.strips import strips
 from cogmap.graph.knn import Nearest, nearest_points
-from cogmap.inputs import check_views
+from cogmap.inputs import checked_views
 from cogmap.navigation.weighing import Weighing, choose_weighing, likeness_weights
 
 RIDGE = 1e-4
@@ -84,7 +84,7 @@ class PanoramaLocaliser:
         CogmapError
             For views that do not look all around, as those themselves tell, or are all alike.
         """
-        check_views(views)
+        views = checked_views(views)
         if not wraps_around(views):
             raise CogmapError(
                 "the last column of these views does not continue in the first, so that turning does not "
@@ -111,7 +111,7 @@ class PanoramaLocaliser:
         CogmapError
             For views of another shape than the remembered ones.
         """
-        check_views(views)
+        views = checked_views(views)
         if tuple(views.shape[1:]) != self.view_shape:
             raise CogmapError(
                 f"views are of shape {tuple(views.shape[1:])} but remembered ones of {self.view_shape}; "

@@ -11,8 +11,8 @@ from sklearn.preprocessing import normalize
 
 from cogmap.errors import CogmapError
 from cogmap.graph.knn import Metric
-from cogmap.graph.neighbour_graph import Components, components, neighbour_graph
-from cogmap.graph.points import Checked, Cloud, checked_cloud
+from cogmap.graph.neighbour_graph import Components, components, neighbour_graph, warn_of_pieces
+from cogmap.graph.points import AnyCloud, Checked, as_rows, checked_cloud
 
 
 @dataclass(eq=False)
@@ -52,14 +52,14 @@ class VisualRoadmap:
     roadmaps for path planning in high-dimensional configuration spaces.
     """
 
-    features: Cloud
+    features: AnyCloud
     _: KW_ONLY
     neighbours: int = 45
     power: float = 1.25
     metric: Metric = "euclidean"
     one_sided: int = 5
 
-    def plan(self, view_a: Cloud, view_b: Cloud) -> Int[np.ndarray, "steps"]:
+    def plan(self, view_a: AnyCloud, view_b: AnyCloud) -> Int[np.ndarray, "steps"]:
         """Give the indices of the views on the way from view a to view b, given by their features.
 
         Parameters
@@ -87,21 +87,25 @@ class VisualRoadmap:
             route.append(int(before[route[-1]]))
         return np.array(route)
 
-    def nearest(self, view: Cloud) -> int:
+    def nearest(self, view: AnyCloud) -> int:
         """Give the index of the remembered view nearest to one given by its features."""
-        test = self._prepared(view if sp.issparse(view) or view.ndim != 1 else view[None])
+        row = as_rows("the view", view)
+        test = self._prepared(np.atleast_2d(row) if isinstance(row, np.ndarray) else row)
         train, squares = self._train
         if test.shape != (1, train.shape[1]):
             raise CogmapError(
-                f"the view has features of shape {view.shape}; give one row of {train.shape[1]} features"
+                f"the view has features of shape {test.shape}; give one row of {train.shape[1]} features"
             )
         products = train @ (test.toarray() if sp.issparse(test) else test)[0]
         return int(np.argmin(squares - 2 * products))
 
+    def __len__(self) -> int:
+        return len(self._train[1])
+
     @cached_property
     def graph(self) -> sp.csr_array:
         """Symmetric costs between neighbours."""
-        if self.features.shape[0] == 1:
+        if len(self) == 1:
             return sp.csr_array((1, 1))
         graph = neighbour_graph(self.features, self.neighbours, metric=self.metric, one_sided=self.one_sided)
         graph.data **= self.power
@@ -109,8 +113,10 @@ class VisualRoadmap:
 
     @cached_property
     def pieces(self) -> Components:
-        """The connected pieces of the graph."""
-        return components(self.graph)
+        """The connected pieces of the graph; a `cogmap.SeparatePiecesWarning` says when it has several."""
+        pieces = components(self.graph)
+        warn_of_pieces(pieces, "no way leads from one to another")
+        return pieces
 
     @cached_property
     def _train(self) -> tuple[Checked, Float[np.ndarray, "views"]]:
@@ -118,7 +124,7 @@ class VisualRoadmap:
         squares = train.multiply(train).sum(axis=1) if sp.issparse(train) else (train**2).sum(axis=1)
         return train, np.asarray(squares)
 
-    def _prepared(self, views: Cloud) -> Checked:
+    def _prepared(self, views: AnyCloud) -> Checked:
         checked = checked_cloud(views)
         directions: Checked = normalize(checked) if self.metric == "cosine" else checked
         return directions

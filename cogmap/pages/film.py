@@ -8,27 +8,31 @@ import cv2
 import numpy as np
 from jaxtyping import UInt8
 
-from cogmap.atomic import atomic_write
+from cogmap.atomic import atomic_write, user_path
 from cogmap.errors import CogmapError
+from cogmap.inputs import AnyArray, checked_views
 
 
-def check_film(out: Path) -> None:
-    """Raise unless a film can be written there: a path that is new and ends in .mp4, or a folder."""
+def check_film(out: str | Path) -> Path:
+    """Give the path of a film to write, or raise unless it is new and ends in .mp4, or is a folder."""
+    out = user_path(out)
     if out.suffix not in {".mp4", ""}:
         raise CogmapError(f"a film is not written as {out.suffix}; let it end in .mp4, or give a folder")
     if out.exists() or out.is_symlink():
         raise CogmapError(
             f"{out} exists already and is left as it is; choose another path or remove it first"
         )
+    return out
 
 
-def write_film(views: UInt8[np.ndarray, "frames height width 3"], out: Path, *, rate: float = 15.0) -> None:
+def write_film(views: AnyArray, out: str | Path, *, rate: float = 15.0) -> None:
     """Write views one after the other, whole or not at all.
 
     Parameters
     ----------
     views
-        RGB images.
+        RGB images, (frames, height, width, 3) uint8. An MP4 shows each pixel as four, so that its frames are
+        of even size whatever theirs is.
     out
         A new file that ends in .mp4, or a new folder for `0000.png` and so on.
     rate
@@ -39,13 +43,13 @@ def write_film(views: UInt8[np.ndarray, "frames height width 3"], out: Path, *, 
     CogmapError
         For another kind of file, one that is there, and an MP4 where OpenCV has no encoder.
     """
-    check_film(out)
+    frames, out = checked_views(views), check_film(out)
     with atomic_write(out, overwrite=False) as path:
         if out.suffix == ".mp4":
-            _write_mp4(views, path, rate)
+            _write_mp4(frames, path, rate)
         else:
             path.mkdir()
-            for index, view in enumerate(views):
+            for index, view in enumerate(frames):
                 cv2.imwrite(str(path / f"{index:04d}.png"), cv2.cvtColor(view, cv2.COLOR_RGB2BGR))
 
 

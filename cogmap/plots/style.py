@@ -7,6 +7,7 @@ of matplotlib, and changes none of them.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from io import BytesIO
 from typing import Any, Literal, cast
 
 import numpy as np
@@ -87,9 +88,18 @@ def heading_bar(axes: Axes, label: str = "heading (°)", *, pad: float = 0.02) -
     colour_bar(axes, direction_scale(), label, pad=pad).set_ticks(QUARTERS.tolist())
 
 
+class SelfShown(Figure):
+    """A figure that shows itself as the last line of a notebook cell, whatever matplotlib is told there."""
+
+    def _repr_png_(self) -> bytes:
+        drawn = BytesIO()
+        self.savefig(drawn, format="png")
+        return drawn.getvalue()
+
+
 def new_figure(width: float, height: float) -> Figure:
     """Make an empty white figure of this size in inches, laid out so that nothing overlaps."""
-    return Figure(figsize=(width, height), dpi=110, facecolor="white", layout="constrained")
+    return SelfShown(figsize=(width, height), dpi=110, facecolor="white", layout="constrained")
 
 
 def new_panels(

@@ -10,7 +10,9 @@ from scipy.sparse.linalg import cg, lsqr
 
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import checked_graph, components, edge_differences
+from cogmap.graph.points import AnyCloud
 from cogmap.graph.shortest_paths import Paths
+from cogmap.inputs import Whole, checked_count
 from cogmap.shape.rips import farthest_points, ratios
 from cogmap.threads import one_thread
 
@@ -39,7 +41,7 @@ class Loops(NamedTuple):
     """When each closes and when it is filled, in lengths of the graph."""
 
 
-def circular_coordinate(graph: sp.csr_array, *, landmarks: int = 150, seed: int = 0) -> Loop:
+def circular_coordinate(graph: AnyCloud, *, landmarks: Whole = 150, seed: Whole = 0) -> Loop:
     """Find the angle along the most persistent loop of a neighbour graph's largest piece.
 
     It is that of `circular_coordinates`, with phases replaced by their ranks, so that points lie evenly on
@@ -64,7 +66,7 @@ def circular_coordinate(graph: sp.csr_array, *, landmarks: int = 150, seed: int 
     return Loop(phase, float(births[0]), float(deaths[0]))
 
 
-def circular_coordinates(graph: sp.csr_array, loops: int, *, landmarks: int = 150, seed: int = 0) -> Loops:
+def circular_coordinates(graph: AnyCloud, loops: Whole, *, landmarks: Whole = 150, seed: Whole = 0) -> Loops:
     r"""Find the angles along the most persistent loops of a neighbour graph's largest piece.
 
     Landmarks far from each other in the graph have an integer cocycle for each of the longest bars of
@@ -96,6 +98,7 @@ def circular_coordinates(graph: sp.csr_array, loops: int, *, landmarks: int = 15
     ----------
     de Silva, Morozov & Vejdemo-Johansson (2011), Persistent cohomology and circular coordinates.
     """
+    loops, landmarks = checked_count("loops", loops), checked_count("landmarks", landmarks)
     graph = checked_graph(graph)
     points = np.flatnonzero(components(graph).labels == 0)
     piece = sp.csr_array(graph[points][:, points])

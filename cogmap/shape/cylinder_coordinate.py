@@ -7,13 +7,15 @@ from scipy.sparse.linalg import cg
 
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import checked_graph
+from cogmap.graph.points import AnyCloud
+from cogmap.inputs import AnyArray, as_array, as_floats
 from cogmap.threads import one_thread
 
 
 def height_coordinate(
-    graph: sp.csr_array,
-    embedding: Float[np.ndarray, "points components"],
-    phase: Float[np.ndarray, "points"],
+    graph: AnyCloud,
+    embedding: AnyArray,
+    phase: AnyArray,
     *,
     similar: float = 1 / 40,
     end: float = 0.08,
@@ -47,6 +49,7 @@ def height_coordinate(
         When the arrays do not match, or too few points have a phase: fewer than 1 / `similar`.
     """
     graph = checked_graph(graph)
+    embedding, phase = as_floats(as_array("embedding", embedding)), as_floats(as_array("phase", phase))
     if not graph.shape[0] == len(embedding) == len(phase):
         raise CogmapError(
             f"the graph has {graph.shape[0]} points, the embedding {len(embedding)} and there are "

@@ -10,7 +10,7 @@ from scipy.spatial import KDTree
 from cogmap.errors import CogmapError
 from cogmap.graph.knn import nearest_points
 from cogmap.graph.points import checked_cloud
-from cogmap.inputs import checked_count
+from cogmap.inputs import AnyArray, Whole, checked_count
 from cogmap.threads import one_thread
 from neurons.layers.dimension import dimension_votes
 
@@ -25,9 +25,7 @@ class LocalDimension(NamedTuple):
     """Shares of variance of a neighbourhood along its principal axes, medians over the points."""
 
 
-def local_dimension(
-    X: Float[np.ndarray, "points features"], *, neighbours: int = 15, most: int = 8
-) -> LocalDimension:
+def local_dimension(X: AnyArray, *, neighbours: Whole = 15, most: Whole = 8) -> LocalDimension:
     """Find the dimension of the manifold that points lie on, by principal components of neighbourhoods.
 
     The variances of a point and its nearest others fall most where the directions along the manifold end and
@@ -37,7 +35,7 @@ def local_dimension(
     Parameters
     ----------
     X
-        Points.
+        Points, (points, features).
     neighbours
         Other points in a neighbourhood: a few times as many as there are dimensions, and few enough to lie
         flat.
@@ -65,7 +63,7 @@ def local_dimension(
     return LocalDimension(int(votes.argmax()) + 1, float(votes.max()), np.median(shares, axis=0))
 
 
-def intrinsic_dimension(X: Float[np.ndarray, "points features"], *, neighbours: int = 100) -> float:
+def intrinsic_dimension(X: AnyArray, *, neighbours: Whole = 100) -> float:
     r"""Estimate the dimension of the manifold that points lie on, by maximum likelihood.
 
     With T_j(x) the distance from x to its j-th nearest point, the number of points within a distance grows as
@@ -80,7 +78,7 @@ def intrinsic_dimension(X: Float[np.ndarray, "points features"], *, neighbours: 
     Parameters
     ----------
     X
-        Points.
+        Points, (points, features).
     neighbours
         k; 100 looks past the noise of single points.
 

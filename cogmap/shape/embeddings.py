@@ -7,8 +7,8 @@ from jaxtyping import Float
 from sklearn.decomposition import KernelPCA
 from sklearn.manifold import Isomap
 
-from cogmap.graph.points import Cloud
-from cogmap.inputs import check_choice
+from cogmap.graph.points import AnyCloud
+from cogmap.inputs import Whole, check_choice
 from cogmap.shape.isomap import LandmarkIsomap
 
 Method = Literal["landmark_isomap", "isomap", "kernel_pca"]
@@ -18,16 +18,16 @@ Method = Literal["landmark_isomap", "isomap", "kernel_pca"]
 class Embedding(Protocol):
     """Takes points (points, features) to coordinates (points, components)."""
 
-    def fit_transform(self, X: Cloud) -> Float[np.ndarray, "points components"]:
+    def fit_transform(self, X: AnyCloud) -> Float[np.ndarray, "points components"]:
         """Find the coordinates of a cloud."""
         ...
 
-    def transform(self, X: Cloud) -> Float[np.ndarray, "places components"]:
+    def transform(self, X: AnyCloud) -> Float[np.ndarray, "places components"]:
         """Place other points."""
         ...
 
 
-def embedding(method: Method, components: int = 4, *, neighbours: int = 15, seed: int = 0) -> Embedding:
+def embedding(method: Method, components: Whole = 4, *, neighbours: Whole = 15, seed: Whole = 0) -> Embedding:
     """Choose a way of embedding bags of words, whose rows have length one.
 
     All compare directions: the Euclidean distance of such rows is the chord that `LandmarkIsomap` measures,

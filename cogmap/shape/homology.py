@@ -6,19 +6,21 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 import scipy.sparse as sp
-from jaxtyping import Float, Int, Num
+from jaxtyping import Float, Int
 from joblib import Parallel, cpu_count, delayed
 from scipy.sparse.csgraph import connected_components
 
 from cogmap.errors import CogmapError
 from cogmap.graph.neighbour_graph import checked_graph
-from cogmap.graph.points import checked_cloud
-from cogmap.inputs import check_choice
+from cogmap.graph.points import AnyCloud, checked_cloud
+from cogmap.inputs import Whole, as_array, check_choice
 from cogmap.shape import betti_thresholds, rips
 from cogmap.shape.resolution import Over, doubt
 
 Metric = Literal["geodesic", "euclidean", "precomputed"]
 
+ROUNDING = 1e-3
+"""Share of the largest distance by which others may be off: the root of float32's rounding, three times."""
 FEWEST = 10
 """Fewer points than this have no shape to speak of."""
 
@@ -102,11 +104,11 @@ class _Found(NamedTuple):
 
 
 def betti(
-    X: Num[np.ndarray, "points *features"] | sp.csr_array,
+    X: AnyCloud,
     metric: Metric = "geodesic",
     *,
     max_dimension: int = 2,
-    seed: int = 0,
+    seed: Whole = 0,
     neighbours: int = 15,
     check: int | None = 25,
     one_sided: int | None = None,
@@ -132,9 +134,9 @@ def betti(
     Parameters
     ----------
     X
-        The points; or with "precomputed" their distances (points, points), infinite between pieces, or as a
-        sparse array their neighbour graph. Repeated points count once, and in the first two metrics their
-        order changes nothing.
+        The points; or with "precomputed" their distances (points, points), symmetric but for rounding and
+        infinite between pieces, or as a sparse array their neighbour graph. Repeated points count once, and
+        in the first two metrics their order changes nothing.
     metric
         "geodesic": shortest paths in the neighbour graph; "euclidean"; "precomputed": distances are judged
         as Euclidean ones, a graph by its shortest paths as "geodesic".
@@ -262,7 +264,7 @@ def _over(found: Float[np.ndarray, "bars"], threshold: float, which: int) -> flo
 
 
 def _metric_spaces(
-    X: Num[np.ndarray, "points *features"] | sp.csr_array,
+    X: AnyCloud,
     metric: Metric,
     counts: tuple[int, ...],
     one_sided: int | None,
@@ -286,16 +288,34 @@ def _metric_spaces(
     return [*rips.geodesics(X, counts, one_sided)] if metric == "geodesic" else [rips.euclidean(X)]
 
 
-def _checked_distances(X: Num[np.ndarray, "points *features"]) -> Float[np.ndarray, "points points"]:
+def _checked_distances(given: object) -> Float[np.ndarray, "points points"]:
+    X = as_array("precomputed distances", given)
     if X.ndim != 2 or X.shape[0] != X.shape[1]:
         raise CogmapError(f"precomputed distances have shape {X.shape}; expected a square, (points, points)")
     _check_enough(len(X))
     X = X.astype(np.float64)
-    if not (X >= 0).all():
-        raise CogmapError("precomputed distances hold NaN or negative values; distances are at least 0")
-    if np.diagonal(X).any() or not np.allclose(X, X.T, rtol=1e-6, atol=0):
-        raise CogmapError("precomputed distances are not symmetric with a zero diagonal; average X and X.T")
-    return X
+    slack = ROUNDING * np.max(np.abs(X), where=np.isfinite(X), initial=0)
+    if not (-slack <= X).all():
+        raise CogmapError(
+            f"precomputed distances hold NaN or negative values, the least is {np.min(X):g}; "
+            "distances are at least 0: of similarities give 1 - X, or the like"
+        )
+    own = np.abs(np.diagonal(X)).max()
+    if own > slack:
+        raise CogmapError(
+            f"precomputed distances have no zero diagonal, it goes up to {own:g}; "
+            "of similarities give 1 - X, or the like"
+        )
+    # infinite on both sides or on none
+    skew = np.abs(np.subtract(X, X.T, out=np.zeros_like(X), where=X != X.T)).max()
+    if skew > slack:
+        raise CogmapError(
+            f"precomputed distances are not symmetric, there and back differ by up to {skew:g}; "
+            "average X and X.T, or of an upper triangle give X + X.T"
+        )
+    mean: np.ndarray = np.maximum((X + X.T) / 2, 0)
+    np.fill_diagonal(mean, 0)
+    return mean
 
 
 def _check_enough(points: int) -> None:

@@ -11,10 +11,16 @@ from sklearn.utils import Tags
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from cogmap.graph.knn import Metric, nearest_points
-from cogmap.graph.neighbour_graph import SMALLEST, components, neighbour_graph, neighbourhood_means
+from cogmap.graph.neighbour_graph import (
+    SMALLEST,
+    components,
+    neighbour_graph,
+    neighbourhood_means,
+    warn_of_pieces,
+)
 from cogmap.graph.points import Cloud
 from cogmap.graph.shortest_paths import Paths
-from cogmap.inputs import checked_count
+from cogmap.inputs import Whole, checked_count
 from cogmap.threads import one_thread
 
 
@@ -47,7 +53,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
 
     With every point a landmark this is Isomap. A graph in pieces is left in pieces, as `pieces_` tells: each
     has its own map, around its own middle, and coordinates in different maps have nothing to do with each
-    other.
+    other. A `cogmap.SeparatePiecesWarning` says how many there are.
 
     Parameters
     ----------
@@ -91,14 +97,14 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
 
     def __init__(
         self,
-        components: int = 4,
+        components: Whole = 4,
         *,
-        neighbours: int = 15,
+        neighbours: Whole = 15,
         one_sided: int | None = None,
-        landmarks: int = 400,
+        landmarks: Whole = 400,
         averaging: bool = False,
         metric: Metric = "euclidean",
-        seed: int = 0,
+        seed: Whole = 0,
     ) -> None:
         self.components = components
         self.neighbours = neighbours
@@ -116,6 +122,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
         X = self._points = self._checked(X, reset=True)
         self.graph_ = neighbour_graph(X, self.neighbours, metric=self.metric, one_sided=self.one_sided)
         self.pieces_ = components(self.graph_)
+        warn_of_pieces(self.pieces_, "each has coordinates of its own (`pieces_`)")
         self._position = np.empty(X.shape[0], dtype=int)
         self._single = np.empty((X.shape[0], self.components))
         rng = np.random.default_rng(self.seed)
@@ -193,7 +200,7 @@ class LandmarkIsomap(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEsti
 
     @property
     def _n_features_out(self) -> int:
-        return self.components
+        return int(self.components)
 
     def __sklearn_tags__(self) -> Tags:
         tags = super().__sklearn_tags__()

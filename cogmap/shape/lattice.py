@@ -1,10 +1,12 @@
 """Lattice reduction: the shortest basis among all that integers make of one."""
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Int
+
+from cogmap.inputs import AnyArray, checked_array
 
 
-def short_basis(gram: Float[np.ndarray, "vectors vectors"]) -> Int[np.ndarray, "vectors vectors"]:
+def short_basis(gram: AnyArray) -> Int[np.ndarray, "vectors vectors"]:
     """Find whole numbers B, det B = ±1, such that the basis B b of the lattice of b is short.
 
     From a vector the multiple of another is taken off that shortens it most, while any can be shortened
@@ -20,6 +22,7 @@ def short_basis(gram: Float[np.ndarray, "vectors vectors"]) -> Int[np.ndarray, "
     ----------
     Seysen (1993), Simultaneous reduction of a lattice basis and its reciprocal basis. Combinatorica 13.
     """
+    gram = checked_array("gram", gram, (None, None))
     basis = np.eye(len(gram), dtype=np.int64)
     pairs = [(i, j) for i in range(len(gram)) for j in range(len(gram)) if i != j]
     shortened = True

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import gudhi
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Int
 
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_samples, checked_count
+from cogmap.inputs import AnyArray, checked_count, checked_rates
 
 ACTIVE = math.exp(-2)
 """Share of its peak at which a cell counts as active: within two standard deviations of a Gaussian field."""
@@ -25,7 +25,7 @@ class Nerve:
 
 
 def population_nerve(
-    rates: Float[np.ndarray, "views cells"],
+    rates: AnyArray,
     *,
     max_dimension: int = 1,
     active: float = ACTIVE,
@@ -64,7 +64,7 @@ def population_nerve(
     if not 0 < active <= 1:
         raise CogmapError(f"active is {active:g}; expected a share of the peak rate, above 0 and at most 1")
     checked_count("together", together)
-    check_samples(rates)
+    rates = checked_rates(rates)
     peak = rates.max(axis=0)
     fires = (rates >= active * peak) & (peak > 0)
     complex_ = gudhi.SimplexTree()

@@ -14,8 +14,10 @@ import numpy as np
 import tomli_w
 from pydantic import Field, ValidationError
 
+from arena.paths import BYTE_ORDER_MARK
 from arena.rooms.parts import FrozenModel
 from arena.settings import first_error
+from cogmap.atomic import user_path
 from cogmap.errors import CogmapError
 from cogmap.sweeps.sampling import Sample
 
@@ -70,7 +72,7 @@ class Plan(FrozenModel):
     def parse(cls, text: str) -> Plan:
         """Read a plan from TOML text."""
         try:
-            fields = tomllib.loads(text)
+            fields = tomllib.loads(text.removeprefix(BYTE_ORDER_MARK))
         except (ValueError, RecursionError) as error:
             raise CogmapError(f"this is not TOML: {error}") from None
         if not fields:
@@ -80,12 +82,13 @@ class Plan(FrozenModel):
     @classmethod
     def load(cls, path: str | Path) -> Plan:
         """Read a plan from a TOML file."""
+        path = user_path(path)
         try:
-            return cls.parse(Path(path).read_text(encoding="utf-8"))
+            return cls.parse(path.read_text(encoding="utf-8"))
         except CogmapError as error:
             raise CogmapError(f"{path}: {error}") from None
         except (OSError, UnicodeDecodeError) as error:
-            reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
+            reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text; save it as such"
             raise CogmapError(f"cannot read the sweep {path}: {reason}") from None
 
     def to_toml(self) -> str:

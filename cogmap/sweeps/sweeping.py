@@ -7,11 +7,12 @@ from pathlib import Path
 import pandas as pd
 from tqdm import tqdm
 
+from cogmap.atomic import user_path
 from cogmap.digests import SUMS, sums
 from cogmap.errors import CogmapError, UnlikeArithmeticWarning
 from cogmap.experiments.provenance import PROVENANCE, write_provenance
 from cogmap.experiments.registry import experiments
-from cogmap.inputs import checked_count
+from cogmap.inputs import Whole, checked_count
 from cogmap.plots.sweep import plot_trend, statistics_of
 from cogmap.sweeps.ledger import Ledger, Record, disk_errors
 from cogmap.sweeps.plan import Plan
@@ -28,7 +29,7 @@ def sweep(
     plan: Plan,
     out: str | Path,
     *,
-    workers: int | None = None,
+    workers: Whole | None = None,
     scheduler: str | None = None,
     retry_failed: bool = False,
     keep_walks: bool = False,
@@ -75,7 +76,7 @@ def sweep(
     if workers is not None and scheduler is not None:
         raise CogmapError("workers are counted on this machine and a scheduler has its own; give one of them")
     points = points_of(plan)
-    ledger = Ledger(Path(out).resolve())
+    ledger = Ledger(user_path(out).resolve())
     with ledger.opened(plan, points, keep_walks=keep_walks):
         left = [point for point in points if ledger.lacks(point, again=retry_failed)]
         work = partial(do, ledger=ledger, chosen=experiments()[plan.experiment], again=retry_failed)

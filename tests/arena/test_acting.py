@@ -1,3 +1,5 @@
+import json
+
 import numba
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ from arena.bodies.arm import Arm
 from arena.bodies.disc import Disc
 from arena.environment import Explorer
 from arena.errors import ArenaError
+from arena.exploration import explore
 from arena.eye.base import AnyEye
 from arena.eye.camera import Camera
 from arena.eye.overhead import Overhead
@@ -122,3 +125,18 @@ def test_arms_go_together_as_alone(eye: AnyEye) -> None:
     np.testing.assert_array_equal(found.poses[-1], arm.camera_poses(found.joints[-1]))
     assert found.commands.shape == (8, 6, 2)
     assert go().joints is None
+
+
+def test_a_policy_may_change_what_it_is_shown_in_place() -> None:
+    def meddling(sensed: Sensed) -> np.ndarray:
+        command = by_sight(sensed)
+        sensed["view"][:] = 0
+        return command
+
+    plain, meddled = (
+        explore(ROOM, policy, EYE, body=BODY, views=np.int64(4), seed=np.int64(1), start=STARTS[0])
+        for policy in (by_sight, meddling)
+    )
+    np.testing.assert_array_equal(plain.views, meddled.views)
+    np.testing.assert_array_equal(plain.poses, meddled.poses)
+    assert json.loads(json.dumps(dict(plain.attributes)))["seed"] == 1

@@ -161,7 +161,11 @@ def test_reward_hook_is_given_what_is_sensed_and_nothing_else() -> None:
     first, *others = (step[0] for step in episode(env, 0, 4))
     assert [reward for _, reward, *_ in list(episode(env, 0, 4))[1:]] == [42.0] * 4
     sensed = [first, *others]
-    assert all(a is b and c is d for (a, c), b, d in zip(seen, sensed, others, strict=False))
+    for (before, after), earlier, later in zip(seen, sensed, others, strict=False):
+        assert before.keys() == after.keys() == later.keys()
+        for name in later:
+            np.testing.assert_array_equal(before[name], earlier[name])
+            np.testing.assert_array_equal(after[name], later[name])
 
 
 def same(one: Any, other: Any) -> None:
@@ -394,3 +398,33 @@ def test_any_body_is_steered_by_a_number_for_each_motor() -> None:
         env.reset(options={"joints": (0,)})
     with pytest.raises(ArenaError, match="the Arm has no two wheels"):
         make(body=arm, control="wheels")
+
+
+def test_what_is_handed_out_may_be_changed_in_place() -> None:
+    def run(*, meddle: bool) -> tuple[list[float], np.ndarray]:
+        env = Explorer("pillar", camera=Camera.panoramic(16, 4), render_mode="rgb_array")
+        seen, _ = env.reset(seed=np.int64(3))
+        rewards = []
+        for _ in range(3):
+            if meddle:
+                seen["odour"] -= seen["odour"].mean()
+                seen["view"][:] = 0
+            frame = env.render()
+            seen, reward, *_ = env.step(FORWARD)
+            rewards.append(reward)
+        return rewards, frame
+
+    (plain, frame), (meddled, black) = run(meddle=False), run(meddle=True)
+    assert plain == meddled
+    np.testing.assert_array_equal(frame, black)
+
+
+def test_there_is_a_room_unless_told() -> None:
+    assert gymnasium.make("arena/Explorer-v0").unwrapped.arena == Arena.load("furnished")
+
+
+@pytest.mark.parametrize("width", [16, 17, 19, 31])
+def test_frames_are_even_as_films_want_them(width: int) -> None:
+    env = Explorer("pillar", camera=Camera.panoramic(width, 5), render_mode="rgb_array")
+    env.reset(seed=0)
+    assert not any(length % 2 for length in env.render().shape[:2])

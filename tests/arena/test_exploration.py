@@ -329,7 +329,7 @@ def test_junk_in_the_way_is_not_touched(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("fields", [{"views": 0}, {"views": -5}, {"seed": -1}])
 def test_counts_out_of_range_touch_nothing(tmp_path: Path, fields: dict[str, int]) -> None:
-    with pytest.raises(ArenaError, match="at least one view"):
+    with pytest.raises(ArenaError, match="give a whole number of at least"):
         go(out=tmp_path / "rec.zarr", **fields)
     assert list(tmp_path.iterdir()) == []
 

@@ -1,3 +1,4 @@
+import json
 from typing import Annotated
 
 import numpy as np
@@ -5,7 +6,7 @@ import pytest
 from pydantic import Field, ValidationError
 
 from arena.errors import ArenaError
-from arena.settings import Settings
+from arena.settings import Settings, checked_whole, plain
 
 
 class Legs(Settings):
@@ -37,3 +38,19 @@ def test_settings_are_values() -> None:
     assert legs.model_dump() == {"count": 6, "length": 0.1}
     with pytest.raises(ValidationError, match="frozen"):
         legs.count = 8
+
+
+def test_numbers_are_pythons_whatever_they_were() -> None:
+    legs = Legs(count=np.int64(6), length=np.float32(0.5))
+    assert (type(legs.count), type(legs.length)) == (int, float)
+    told = plain(
+        {"a": np.int64(1), "b": [np.float32(0.5), (np.array([1]).all(), "x")], "c": np.zeros((1, 2))}
+    )
+    assert json.loads(json.dumps(told)) == {"a": 1, "b": [0.5, [True, "x"]], "c": [[0.0, 0.0]]}
+
+
+@pytest.mark.parametrize("value", [-1, 1.0, "1", True, None])
+def test_whole_numbers_are_whole(value: object) -> None:
+    assert type(checked_whole("seed", np.uint8(3))) is int
+    with pytest.raises(ArenaError, match=r"seed is .*; give a whole number of at least 0"):
+        checked_whole("seed", value)

@@ -95,7 +95,10 @@ def test_what_is_given_is_not_changed_later_and_fits_the_spaces() -> None:
 
 @pytest.mark.parametrize(
     ("fields", "message"),
-    [({"num_envs": 0}, "at least one"), ({"render_mode": "rgb_array"}, "draw no frames")],
+    [
+        ({"num_envs": 0}, "num_envs is 0; give a whole number"),
+        ({"render_mode": "rgb_array"}, "draw no frames"),
+    ],
 )
 def test_bad_parameters_are_one_sentence(fields: dict[str, Any], message: str) -> None:
     with pytest.raises(ArenaError, match=message):
@@ -110,3 +113,18 @@ def test_bad_actions_and_steps_before_reset() -> None:
     for bad in (np.zeros((3, 2)), np.full((2, 2), np.nan)):
         with pytest.raises(ArenaError, match="action"):
             ours.step(bad)
+
+
+def test_what_is_handed_out_may_be_changed_in_place() -> None:
+    def run(*, meddle: bool) -> list[np.ndarray]:
+        env = VectorExplorer(num_envs=np.int64(3), camera=Camera.panoramic(16, 4))
+        seen, _ = env.reset(seed=np.arange(3))
+        rewards = []
+        for _ in range(3):
+            if meddle:
+                seen["odour"] -= seen["odour"].mean()
+            seen, reward, *_ = env.step(np.full((3, 2), 0.3))
+            rewards.append(reward)
+        return rewards
+
+    np.testing.assert_array_equal(run(meddle=False), run(meddle=True))

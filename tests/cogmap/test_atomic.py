@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from cogmap import CogmapError
-from cogmap.atomic import METRICS, atomic_write, result_folder
+from cogmap.atomic import METRICS, atomic_write, result_folder, user_path
 
 
 def test_what_cannot_be_written_is_one_sentence(tmp_path: Path) -> None:
@@ -40,3 +40,10 @@ def test_other_peoples_folders_are_left_alone(tmp_path: Path) -> None:
     with pytest.raises(CogmapError, match="not the result"), result_folder(tmp_path / "diary.txt"):
         pass
     assert [entry.name for entry in tmp_path.iterdir()] == ["diary.txt"]
+
+
+def test_an_unknown_home_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert user_path("~/map") == tmp_path / "map"
+    with pytest.raises(CogmapError, match="~nobody-of-this-name/map begins with a home that is not known"):
+        user_path("~nobody-of-this-name/map")

@@ -469,3 +469,25 @@ def test_help_gives_examples(run) -> None:
         status, out, _ = run(command, "--help")
         assert status == 0
         assert f"cogmap {command} " in " ".join(out.split())
+
+
+def test_a_tilde_is_the_home_in_every_path(run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "room.toml").write_text(FURNISHED, encoding="utf-8-sig")
+    assert run("arena", "~/room.toml", "--out=~/room.png")[0] == 0
+    assert (tmp_path / "room.png").is_file()
+    refused(run("report", "~/nothing"), str(tmp_path / "nothing"))
+    refused(run("learn", "~/nothing.zarr", "--out", "~nobody-of-this-name/map"), "home that is not known")
+
+
+@pytest.mark.filterwarnings("ignore::cogmap.errors.UntrustedMapWarning")
+def test_score_of_an_untrusted_map_says_so_whatever_python_is_told(run, folder: Path, tmp_path: Path) -> None:
+    few = Recording.open(folder / "walk.zarr")[:300]
+    few.save(tmp_path / "few.zarr")
+    CognitiveMap(charts=60).fit(few.views, few.odours).save(tmp_path / "map")
+    status, out, err = run(
+        "score", tmp_path / "map", tmp_path / "few.zarr", "--train", tmp_path / "few.zarr", "--json"
+    )
+    assert status == 0
+    assert json.loads(out)["trusted"] is False
+    assert err == f"cogmap: this map is not to be trusted: {json.loads(out)['reason']}\n"

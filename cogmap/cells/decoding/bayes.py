@@ -5,23 +5,23 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float, Real
+from jaxtyping import Float
 from scipy import special
 
 from cogmap.cells.rates.spikes import SECONDS, check_seconds
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_array, check_samples
+from cogmap.inputs import AnyArray, checked_array, checked_rates
 
 PAIRS = 4_000_000
 """Of place and direction, that are weighed at once."""
 
 
 def poisson_posterior(
-    spikes: Real[np.ndarray, "views cells"],
-    patterns: Float[np.ndarray, "cells bins"],
+    spikes: AnyArray,
+    patterns: AnyArray,
     *,
     seconds: float = SECONDS,
-    prior: Float[np.ndarray, "bins"] | None = None,
+    prior: AnyArray | None = None,
     faintest: float = 1e-3,
 ) -> Float[np.ndarray, "views bins"]:
     """Probability of each bin given the spikes of independent Poisson cells.
@@ -53,13 +53,13 @@ def poisson_posterior(
     Zhang, Ginzburg, McNaughton & Sejnowski 1998, Interpreting neuronal population activity by reconstruction,
     J. Neurophysiol. 79.
     """
-    check_samples(spikes)
-    check_array("patterns", patterns, (spikes.shape[1], None))
+    spikes = checked_rates(spikes)
+    patterns = checked_array("patterns", patterns, (spikes.shape[1], None))
     check_seconds(seconds)
     rates = np.maximum(patterns.astype(float), faintest)
     likelihood = spikes.astype(float) @ np.log(rates) - seconds * rates.sum(axis=0)
     if prior is not None:
-        check_array("prior", prior, (patterns.shape[1],))
+        prior = checked_array("prior", prior, (patterns.shape[1],))
         if prior.min() < 0 or prior.max() <= 0:
             raise CogmapError("prior is negative or nowhere positive; give a probability to every bin")
         likelihood += special.xlogy(1, prior)
@@ -74,9 +74,9 @@ class JointPosterior(NamedTuple):
 
 
 def joint_posterior(
-    spikes: Real[np.ndarray, "views cells"],
-    rates: Float[np.ndarray, "cells bins"],
-    gains: Float[np.ndarray, "cells directions"],
+    spikes: AnyArray,
+    rates: AnyArray,
+    gains: AnyArray,
     *,
     seconds: float = SECONDS,
     faintest: float = 1e-3,
@@ -103,16 +103,16 @@ def joint_posterior(
     CogmapError
         For values that are negative or not finite, shapes that do not fit.
     """
-    check_samples(spikes)
-    check_array("rates", rates, (spikes.shape[1], None))
-    check_array("gains", gains, (spikes.shape[1], None))
+    spikes = checked_rates(spikes)
+    of_place = checked_array("rates", rates, (spikes.shape[1], None))
+    of_heading = checked_array("gains", gains, (spikes.shape[1], None))
     check_seconds(seconds)
-    p, d = np.maximum(rates.astype(float), faintest), np.maximum(gains.astype(float), faintest)
+    p, d = np.maximum(of_place.astype(float), faintest), np.maximum(of_heading.astype(float), faintest)
     expected = seconds * (p.T @ d)
-    of_place, of_heading = spikes @ np.log(p), spikes @ np.log(d)
-    places, headings = np.empty_like(of_place), np.empty_like(of_heading)
+    by_place, by_heading = spikes @ np.log(p), spikes @ np.log(d)
+    places, headings = np.empty_like(by_place), np.empty_like(by_heading)
     for views in np.array_split(np.arange(len(spikes)), -(-len(spikes) * expected.size // PAIRS)):
-        scores = of_place[views, :, None] + of_heading[views, None, :] - expected
+        scores = by_place[views, :, None] + by_heading[views, None, :] - expected
         scores -= scores.max(axis=(1, 2), keepdims=True)
         np.exp(scores, out=scores)
         places[views], headings[views] = scores.sum(axis=2), scores.sum(axis=1)

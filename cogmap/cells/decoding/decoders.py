@@ -10,13 +10,13 @@ from sklearn.neighbors import KNeighborsRegressor
 
 from arena.angles import wrap_angle
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_array
+from cogmap.inputs import AnyArray, as_array, as_floats, check_array, checked_array, checked_headings
 
 
 def decode_positions(
-    train_odours: Float[np.ndarray, "train odorants"],
-    train_positions: Float[np.ndarray, "train 2"],
-    odours: Float[np.ndarray, "views odorants"],
+    train_odours: AnyArray,
+    train_positions: AnyArray,
+    odours: AnyArray,
     *,
     neighbours: int = 4,
 ) -> Float[np.ndarray, "views 2"]:
@@ -38,9 +38,9 @@ def decode_positions(
     CogmapError
         For values that are not finite, shapes that do not fit, fewer training views than neighbours.
     """
-    check_array("train_odours", train_odours, (None, None))
-    check_array("train_positions", train_positions, (len(train_odours), 2))
-    check_array("odours", odours, (None, train_odours.shape[1]))
+    train_odours = checked_array("train_odours", train_odours, (None, None))
+    train_positions = checked_array("train_positions", train_positions, (len(train_odours), 2))
+    odours = checked_array("odours", odours, (None, train_odours.shape[1]))
     if len(train_odours) < neighbours:
         raise CogmapError(f"{len(train_odours)} training views; give at least {neighbours}")
     decoder = KNeighborsRegressor(n_neighbors=neighbours, weights="distance", algorithm="kd_tree")
@@ -49,10 +49,10 @@ def decode_positions(
 
 
 def position_errors(
-    train_odours: Float[np.ndarray, "train odorants"],
-    train_positions: Float[np.ndarray, "train 2"],
-    odours: Float[np.ndarray, "views odorants"],
-    positions: Float[np.ndarray, "views 2"],
+    train_odours: AnyArray,
+    train_positions: AnyArray,
+    odours: AnyArray,
+    positions: AnyArray,
 ) -> Float[np.ndarray, "views"]:
     """Distance in m from each position to what `decode_positions` makes of its log odour.
 
@@ -63,14 +63,13 @@ def position_errors(
     CogmapError
         For values that are not finite, shapes that do not fit, fewer than four training views.
     """
-    check_array("positions", positions, (len(odours), 2))
+    odours = checked_array("odours", odours, (None, None))
+    positions = checked_array("positions", positions, (len(odours), 2))
     missed = decode_positions(train_odours, train_positions, odours) - positions
     return np.asarray(np.linalg.norm(missed, axis=1))
 
 
-def likeliest(
-    scores: Float[np.ndarray, "views bins"], centres: Float[np.ndarray, "bins *axes"]
-) -> Float[np.ndarray, "views *axes"]:
+def likeliest(scores: AnyArray, centres: AnyArray) -> Float[np.ndarray, "views *axes"]:
     """Centre of the bin with the highest score in each view, NaN in a view without any score.
 
     Parameters
@@ -85,6 +84,9 @@ def likeliest(
     CogmapError
         For centres of other bins.
     """
+    scores, centres = as_floats(as_array("scores", scores)), as_floats(as_array("centres", centres))
+    if scores.ndim != 2:
+        raise CogmapError(f"scores have shape {scores.shape}; give one row per view, (views, bins)")
     check_array("centres", centres, (scores.shape[1], *(None,) * (centres.ndim - 1)))
     known = ~np.isnan(scores)
     decoded: np.ndarray = centres[np.where(known, scores, -np.inf).argmax(axis=1)]
@@ -100,9 +102,7 @@ class HeadingFrame(NamedTuple):
     mirror: bool
 
 
-def fit_heading_frame(
-    phase: Float[np.ndarray, "train"], headings: Float[np.ndarray, "train"]
-) -> HeadingFrame:
+def fit_heading_frame(phase: AnyArray, headings: AnyArray) -> HeadingFrame:
     """Find the rotation, and whether a mirror, that brings phases closest to headings, both in rad.
 
     It maximises the resultant R = |mean exp i(θ ∓ φ)|; a tie is no mirror.
@@ -110,27 +110,25 @@ def fit_heading_frame(
     Raises
     ------
     CogmapError
-        For values that are not finite or shapes that do not fit.
+        For values that are not finite or hardly rad, or shapes that do not fit.
     """
-    check_array("phase", phase, (None,))
-    check_array("headings", headings, (len(phase),))
+    phase = checked_array("phase", phase, (None,))
+    headings = checked_headings(headings, len(phase))
     plain, mirrored = (np.mean(np.exp(1j * (headings.astype(float) - sign * phase))) for sign in (1, -1))
     mirror = bool(abs(mirrored) > abs(plain))
     return HeadingFrame(float(np.angle(mirrored if mirror else plain)), mirror)
 
 
-def heading_errors(
-    phase: Float[np.ndarray, "views"], headings: Float[np.ndarray, "views"], frame: HeadingFrame
-) -> Float[np.ndarray, "views"]:
+def heading_errors(phase: AnyArray, headings: AnyArray, frame: HeadingFrame) -> Float[np.ndarray, "views"]:
     """Signed error θ̂ − θ in rad, in (−π, π], of phases read in a frame.
 
     Raises
     ------
     CogmapError
-        For values that are not finite or shapes that do not fit.
+        For values that are not finite or hardly rad, or shapes that do not fit.
     """
-    check_array("phase", phase, (None,))
-    check_array("headings", headings, (len(phase),))
+    phase = checked_array("phase", phase, (None,))
+    headings = checked_headings(headings, len(phase))
     sign = -1 if frame.mirror else 1
     return wrap_angle(sign * phase.astype(float) + frame.rotation - headings)
 
@@ -145,7 +143,7 @@ class MapFrame(NamedTuple):
     mirror: bool
 
 
-def fit_map_frame(mapped: Float[np.ndarray, "train 2"], positions: Float[np.ndarray, "train 2"]) -> MapFrame:
+def fit_map_frame(mapped: AnyArray, positions: AnyArray) -> MapFrame:
     """Find the similarity, and whether a mirror, that brings a map closest to positions in m.
 
     It minimises the squared distance; a tie is no mirror.
@@ -155,8 +153,8 @@ def fit_map_frame(mapped: Float[np.ndarray, "train 2"], positions: Float[np.ndar
     CogmapError
         For values that are not finite or shapes that do not fit.
     """
-    check_array("mapped", mapped, (None, 2))
-    check_array("positions", positions, (len(mapped), 2))
+    mapped = checked_array("mapped", mapped, (None, 2))
+    positions = checked_array("positions", positions, (len(mapped), 2))
     found, true = _complex(mapped), _complex(positions)
     plain, mirrored = (np.mean((true - true.mean()) * z.conj()) for z in (found, found.conj()))
     mirror = bool(abs(mirrored) > abs(plain))
@@ -166,7 +164,7 @@ def fit_map_frame(mapped: Float[np.ndarray, "train 2"], positions: Float[np.ndar
     return MapFrame(complex(scale), complex(true.mean() - scale * centre), mirror)
 
 
-def place_map(mapped: Float[np.ndarray, "views 2"], frame: MapFrame) -> Float[np.ndarray, "views 2"]:
+def place_map(mapped: AnyArray, frame: MapFrame) -> Float[np.ndarray, "views 2"]:
     """Lay a map in the room, m.
 
     Raises
@@ -174,7 +172,7 @@ def place_map(mapped: Float[np.ndarray, "views 2"], frame: MapFrame) -> Float[np
     CogmapError
         For values that are not finite or shapes that do not fit.
     """
-    check_array("mapped", mapped, (None, 2))
+    mapped = checked_array("mapped", mapped, (None, 2))
     found = _complex(mapped)
     laid = frame.scale * (found.conj() if frame.mirror else found) + frame.shift
     return np.stack([laid.real, laid.imag], axis=1)

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float, Real
+from jaxtyping import Float
 
 from cogmap.cells.measures.correlations import correlations, standardised
 from cogmap.cells.rates.maps import RateMaps
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_array
+from cogmap.inputs import AnyArray, checked_array
 
 
-def pattern_correlations(
-    activity: Real[np.ndarray, "views cells"], patterns: Float[np.ndarray, "cells bins"]
-) -> Float[np.ndarray, "views bins"]:
+def pattern_correlations(activity: AnyArray, patterns: AnyArray) -> Float[np.ndarray, "views bins"]:
     """Correlate the activity in each view with the mean pattern of each bin, over the cells.
 
     NaN where all cells fire alike, as when all are silent. `likeliest` gives the place or heading with the
@@ -36,8 +34,8 @@ def pattern_correlations(
     Wilson & McNaughton 1993, Dynamics of the hippocampal ensemble code for space, Science 261. Zhang et al.
     1998, J. Neurophysiol. 79 (template matching).
     """
-    check_array("activity", activity, (None, None))
-    check_array("patterns", patterns, (activity.shape[1], None))
+    activity = checked_array("activity", activity, (None, None))
+    patterns = checked_array("patterns", patterns, (activity.shape[1], None))
     return np.asarray(standardised(activity.astype(float)) @ standardised(patterns.T.astype(float)).T)
 
 

@@ -11,6 +11,7 @@ from scipy import ndimage
 from cogmap.cells.rates.maps import RateMaps
 from cogmap.cells.rates.ratios import ratio
 from cogmap.errors import CogmapError
+from cogmap.inputs import AnyArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,9 +72,7 @@ def place_fields(
     return PlaceFields(labels, number, largest.sum(axis=(1, 2)) * maps.bin_area, _centroid(maps, largest))
 
 
-def place_coverage(
-    fields: PlaceFields, passing: Bool[np.ndarray, "cells"], reachable: Bool[np.ndarray, "ny nx"]
-) -> float:
+def place_coverage(fields: PlaceFields, passing: AnyArray, reachable: AnyArray) -> float:
     """Part of the reachable area that is inside a field of some passing cell.
 
     Parameters
@@ -90,6 +89,7 @@ def place_coverage(
     CogmapError
         When the shapes do not fit the fields or nothing is reachable.
     """
+    passing, reachable = np.asarray(passing, bool), np.asarray(reachable, bool)
     if (len(passing), *reachable.shape) != fields.labels.shape:
         raise CogmapError(
             f"{len(passing)} cells and {reachable.shape} bins do not fit fields of shape "

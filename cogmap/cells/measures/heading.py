@@ -14,7 +14,7 @@ from cogmap.cells.rates.bins import BinEdges
 from cogmap.cells.rates.maps import RateMaps, rate_maps
 from cogmap.cells.rates.spikes import SECONDS, check_seconds
 from cogmap.cells.rates.tuning import mean_vectors, tuning_curves, tuning_widths
-from cogmap.inputs import check_samples
+from cogmap.inputs import AnyArray, checked_array, checked_headings, checked_rates
 
 LEAST_VECTOR = 0.5
 """A head-direction cell's mean vector is longer."""
@@ -23,9 +23,9 @@ MOST_INFORMATION = 0.3
 
 
 def heading_statistics(
-    rates: Float[np.ndarray, "views cells"],
-    positions: Float[np.ndarray, "views 2"],
-    headings: Float[np.ndarray, "views"],
+    rates: AnyArray,
+    positions: AnyArray,
+    headings: AnyArray,
     *,
     maps: RateMaps | None = None,
     smoothing: float = 0.15,
@@ -73,9 +73,12 @@ def heading_statistics(
     Raises
     ------
     CogmapError
-        For rates that are negative or not finite, shapes that do not fit, maps of other cells.
+        For rates that are negative or not finite, shapes that do not fit, headings that are hardly rad, maps
+        of other cells.
     """
-    check_samples(rates, positions=positions, headings=headings)
+    rates = checked_rates(rates)
+    positions = checked_array("positions", positions, (len(rates), 2))
+    headings = checked_headings(headings, len(rates))
     maps = rate_maps(rates, positions) if maps is None else maps.of_cells(rates.shape[1])
     check_seconds(seconds)
     curves = tuning_curves(rates, headings)

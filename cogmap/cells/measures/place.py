@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pandas as pd
-from jaxtyping import Float
 
 from cogmap.cells.measures.coherence import coherence
 from cogmap.cells.measures.fields import PlaceFields, place_fields
@@ -13,7 +12,7 @@ from cogmap.cells.measures.place_by_direction import place_by_direction
 from cogmap.cells.measures.stability import map_stability
 from cogmap.cells.rates.maps import RateMaps, rate_maps
 from cogmap.cells.rates.tuning import mean_vectors
-from cogmap.inputs import check_samples
+from cogmap.inputs import AnyArray, checked_array, checked_headings, checked_rates
 
 LEAST_INFORMATION = 0.5
 """bit/spike; a place cell has more."""
@@ -22,9 +21,9 @@ MOST_DIRECTION = 0.25
 
 
 def place_statistics(
-    rates: Float[np.ndarray, "views cells"],
-    positions: Float[np.ndarray, "views 2"],
-    headings: Float[np.ndarray, "views"] | None,
+    rates: AnyArray,
+    positions: AnyArray,
+    headings: AnyArray | None,
     *,
     maps: RateMaps | None = None,
     fields: PlaceFields | None = None,
@@ -69,10 +68,13 @@ def place_statistics(
     Raises
     ------
     CogmapError
-        For rates that are negative or not finite, shapes that do not fit, maps of other cells.
+        For rates that are negative or not finite, shapes that do not fit, headings that are hardly rad, maps
+        of other cells.
     """
-    check_samples(rates, positions=positions, headings=headings)
-    maps = rate_maps(rates, positions) if maps is None else maps.of_cells(rates.shape[1])
+    rates = checked_rates(rates)
+    positions = checked_array("positions", positions, (len(rates), 2))
+    headings = None if headings is None else checked_headings(headings, len(rates))
+    maps = rate_maps(rates, positions, smoothing=smoothing) if maps is None else maps.of_cells(rates.shape[1])
     fields = place_fields(maps) if fields is None else fields
     edges = maps.edges
     unsmoothed = rate_maps(rates, positions, edges.side, 0.0, edges=edges, visited=maps.visited)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Float, Real
+from jaxtyping import Float
 
 from cogmap.cells.rates.bins import heading_bin
 from cogmap.cells.rates.ratios import ratio
-from cogmap.inputs import check_samples
+from cogmap.inputs import AnyArray, Whole, checked_headings, checked_rates
 
 
 class RayleighTest(NamedTuple):
@@ -21,9 +21,7 @@ class RayleighTest(NamedTuple):
     """Chance of so large a z when every direction is as likely as any other."""
 
 
-def rayleigh_test(
-    spikes: Real[np.ndarray, "views cells"], headings: Float[np.ndarray, "views"], bins: int | None = 36
-) -> RayleighTest:
+def rayleigh_test(spikes: AnyArray, headings: AnyArray, bins: Whole | None = 36) -> RayleighTest:
     """Test every cell for uniformity of its spikes over the circle, against one preferred direction.
 
     z = n R² and p = e⁻ᶻ (1 + (2z − z²) / 4n − (24z − 132z² + 76z³ − 9z⁴) / 288n²), the bracket only for
@@ -49,11 +47,12 @@ def rayleigh_test(
     Wilkie 1983, Rayleigh test for randomness of circular data, Applied Statistics 32; Mardia & Jupp 2000,
     Directional Statistics, chapter 6. Kish 1965, Survey Sampling (effective number).
     """
-    check_samples(spikes, headings=headings)
+    spikes = checked_rates(spikes)
+    headings = checked_headings(headings, len(spikes))
     weight = np.ones(len(headings))
     if bins is not None:
-        index = heading_bin(headings, bins)
-        weight = 1 / np.bincount(index, minlength=bins)[index]
+        index = heading_bin(headings, int(bins))
+        weight = 1 / np.bincount(index, minlength=int(bins))[index]
     across, along = weight * np.cos(headings), weight * np.sin(headings)
     total, x, y, square = np.stack([weight, across, along, weight**2]) @ spikes.astype(float)
     number, resultant = ratio(total**2, square), ratio(np.hypot(x, y), total)

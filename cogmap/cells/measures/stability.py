@@ -9,13 +9,11 @@ from cogmap.cells.measures.correlations import correlations
 from cogmap.cells.rates.bins import BinEdges
 from cogmap.cells.rates.maps import rate_maps
 from cogmap.cells.rates.tuning import tuning_curves
+from cogmap.inputs import AnyArray, Whole, checked_array, checked_headings, checked_rates
 
 
 def map_stability(
-    rates: Float[np.ndarray, "views cells"],
-    positions: Float[np.ndarray, "views 2"],
-    edges: BinEdges,
-    smoothing: float = 0.15,
+    rates: AnyArray, positions: AnyArray, edges: BinEdges, smoothing: float = 0.15
 ) -> Float[np.ndarray, "cells"]:
     """Correlation between the rate maps of the first and of the second half of the views.
 
@@ -24,6 +22,8 @@ def map_stability(
 
     Source: Langston et al. 2010, Development of the spatial representation system in the rat, Science 328.
     """
+    rates = checked_rates(rates)
+    positions = checked_array("positions", positions, (len(rates), 2))
     inside = np.flatnonzero(edges.bin_of(positions) >= 0)
     if len(inside) < 2:
         return np.full(rates.shape[1], np.nan)
@@ -36,13 +36,13 @@ def map_stability(
     return correlations(first, second)
 
 
-def curve_stability(
-    rates: Float[np.ndarray, "views cells"], headings: Float[np.ndarray, "views"], bins: int = 36
-) -> Float[np.ndarray, "cells"]:
+def curve_stability(rates: AnyArray, headings: AnyArray, bins: Whole = 36) -> Float[np.ndarray, "cells"]:
     """Correlation between the tuning curves of the first and of the second half of the views.
 
     Over the bins looked at in both; NaN where a half is constant. Source: as `map_stability`.
     """
+    rates = checked_rates(rates)
+    headings = checked_headings(headings, len(rates))
     if len(rates) < 2:
         return np.full(rates.shape[1], np.nan)
     first, second = (

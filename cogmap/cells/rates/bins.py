@@ -10,10 +10,13 @@ from scipy import ndimage, sparse
 
 from cogmap.cells.rates.ratios import ratio
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_array
+from cogmap.inputs import AnyArray, checked_array
 
 ON_EDGE = 1e-6
 """A position this near (m) to the outermost edges is on them: multiples of a bin are not exact in binary."""
+
+MOST_BINS = 50_000
+"""A room of 11 by 11 m has so many bins of 5 cm; of more, each needs a view on average."""
 
 
 class BinEdges(NamedTuple):
@@ -63,7 +66,7 @@ class BinEdges(NamedTuple):
 
 
 def bin_edges(
-    positions: Float[np.ndarray, "views 2"],
+    positions: AnyArray,
     bin: float = 0.1,  # noqa: A002
 ) -> BinEdges:
     """Lay square bins over the bounding box of positions, with edges at whole multiples of the bin.
@@ -78,13 +81,22 @@ def bin_edges(
     Raises
     ------
     CogmapError
-        When `positions` is not a finite (views, 2) array or `bin` is not positive.
+        When `positions` is not a finite (views, 2) array or `bin` is not positive, and for more bins than
+        views and than `MOST_BINS`: positions are then hardly in m.
     """
-    check_array("positions", positions, (None, 2))
+    positions = checked_array("positions", positions, (None, 2))
     if not (np.isfinite(bin) and bin > 0):
         raise CogmapError(f"bin is {bin} m; give the side of a bin as a positive number of metres")
     first = np.floor((positions.min(axis=0) + ON_EDGE) / bin).astype(int)
     last = np.maximum(np.ceil((positions.max(axis=0) - ON_EDGE) / bin).astype(int), first + 1)
+    columns, rows = (last - first).tolist()
+    if columns * rows > max(MOST_BINS, len(positions)):
+        wide, deep = np.ptp(positions, axis=0)
+        raise CogmapError(
+            f"{len(positions)} positions spread over {wide:g} by {deep:g} make {columns} by {rows} bins of "
+            f"{bin:g}; are they in centimetres or pixels? Turn them into metres, or give bin= in their own "
+            f"unit: {max(wide, deep) / 50:.1g} makes some 50 bins along the longer side"
+        )
     x, y = (np.arange(low, high + 1) * bin for low, high in zip(first, last, strict=True))
     return BinEdges(x, y)
 

@@ -11,7 +11,7 @@ from scipy import ndimage
 from cogmap.cells.rates.bins import BinEdges, bin_edges, sums_by_bin
 from cogmap.cells.rates.ratios import ratio
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_samples
+from cogmap.inputs import AnyArray, checked_array, checked_rates
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,13 +69,13 @@ class RateMaps:
 
 
 def rate_maps(
-    rates: Float[np.ndarray, "views cells"],
-    positions: Float[np.ndarray, "views 2"],
+    rates: AnyArray,
+    positions: AnyArray,
     bin: float = 0.1,  # noqa: A002
     smoothing: float = 0.15,
     *,
     edges: BinEdges | None = None,
-    visited: Bool[np.ndarray, "ny nx"] | None = None,
+    visited: AnyArray | None = None,
 ) -> RateMaps:
     """Map the mean rate of every cell over the room, each view counting as one unit of occupancy.
 
@@ -102,18 +102,19 @@ def rate_maps(
     Raises
     ------
     CogmapError
-        For rates that are negative or not finite, shapes that do not fit, bins that are not `bin` wide.
+        For rates that are negative or not finite, shapes that do not fit, bins that are not `bin` wide, and
+        positions that are hardly in the unit of `bin` (`bin_edges`).
     """
-    check_samples(rates, positions=positions)
+    rates = checked_rates(rates)
+    positions = checked_array("positions", positions, (len(rates), 2))
     if not (np.isfinite(smoothing) and smoothing >= 0):
         raise CogmapError(f"smoothing is {smoothing} m; give a standard deviation of 0 m or more")
     if edges is None:
         edges = bin_edges(positions, bin)
     elif not np.allclose(np.concatenate([np.diff(along) for along in edges]), bin):
         raise CogmapError(f"edges are not {bin:g} m apart; make them with bin_edges(positions, {bin:g})")
-    if visited is None:
-        visited = edges.visited(positions)
-    elif visited.shape != edges.shape:
+    visited = edges.visited(positions) if visited is None else np.asarray(visited, bool)
+    if visited.shape != edges.shape:
         raise CogmapError(f"visited has shape {visited.shape}, but the edges make {edges.shape} bins")
     index, bins = edges.bin_of(positions), edges.shape[0] * edges.shape[1]
     views, spikes = (

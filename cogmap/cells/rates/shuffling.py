@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float, Real
 
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_samples
+from cogmap.inputs import AnyArray, checked_rates
 
 
 class ShuffleTest(NamedTuple):
@@ -23,7 +23,7 @@ class ShuffleTest(NamedTuple):
 
 def shuffle_test(
     statistic: Callable[[Real[np.ndarray, "views cells"]], Float[np.ndarray, "cells"]],
-    rates: Real[np.ndarray, "views cells"],
+    rates: AnyArray,
     rng: np.random.Generator,
     *,
     shuffles: int = 100,
@@ -59,7 +59,7 @@ def shuffle_test(
     Langston et al. 2010, Development of the spatial representation system in the rat, Science 328. Phipson &
     Smyth 2010, Permutation p-values should never be zero, Stat. Appl. Genet. Mol. Biol. 9.
     """
-    check_samples(rates)
+    rates = checked_rates(rates)
     if shuffles < 1:
         raise CogmapError(f"{shuffles} shuffles make no null; give at least 1")
     if not 1 <= least_shift <= len(rates) // 2:

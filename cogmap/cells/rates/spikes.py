@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Int
 
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_samples
+from cogmap.inputs import AnyArray, checked_rates
 
 SECONDS = 0.3
 """How long a view lasts: about what a brownian walk takes from one to the next."""
 
 
 def poisson_spikes(
-    rates: Float[np.ndarray, "views cells"],
+    rates: AnyArray,
     rng: np.random.Generator,
     *,
     peak: float | None = 20.0,
@@ -37,7 +37,7 @@ def poisson_spikes(
     CogmapError
         For rates that are negative or not finite, a peak or a duration that is not positive.
     """
-    check_samples(rates)
+    rates = checked_rates(rates)
     check_seconds(seconds)
     if peak is not None:
         if not (np.isfinite(peak) and peak > 0):

@@ -10,7 +10,8 @@ from jaxtyping import Complex, Float
 from cogmap.cells.rates.bins import heading_bin, heading_centres, means_by_bin
 from cogmap.cells.rates.maps import RateMaps
 from cogmap.cells.rates.ratios import ratio
-from cogmap.inputs import check_samples
+from cogmap.errors import CogmapError
+from cogmap.inputs import AnyArray, Whole, as_array, as_floats, checked_headings, checked_rates
 
 
 class Tuning(NamedTuple):
@@ -21,9 +22,7 @@ class Tuning(NamedTuple):
     """`tuning_curves` of the same cells, Hz."""
 
 
-def tuning_curves(
-    rates: Float[np.ndarray, "views cells"], headings: Float[np.ndarray, "views"], bins: int = 36
-) -> Float[np.ndarray, "cells bins"]:
+def tuning_curves(rates: AnyArray, headings: AnyArray, bins: Whole = 36) -> Float[np.ndarray, "cells bins"]:
     """Mean rate of every cell in Hz in equal bins of heading, NaN in a bin without views.
 
     Each bin is normalised by its own number of views. Bin k is centred at −π + (k + ½) 2π / bins.
@@ -40,13 +39,16 @@ def tuning_curves(
     Raises
     ------
     CogmapError
-        For rates that are negative or not finite, shapes that do not fit, fewer than three bins.
+        For rates that are negative or not finite, shapes that do not fit, headings that are hardly rad, fewer
+        than three bins.
     """
-    check_samples(rates, headings=headings)
+    rates = checked_rates(rates)
+    headings = checked_headings(headings, len(rates))
+    bins = int(bins)
     return means_by_bin(heading_bin(headings, bins), bins, rates).T
 
 
-def mean_vectors(curves: Float[np.ndarray, "cells bins"]) -> Complex[np.ndarray, "cells"]:
+def mean_vectors(curves: AnyArray) -> Complex[np.ndarray, "cells"]:
     """Mean vector Σ λ e^{iθ} / Σ λ of tuning curves, NaN for a silent cell.
 
     Its length is 0 for a cell that knows no direction and 1 for one that fires in a single bin, its argument
@@ -56,11 +58,20 @@ def mean_vectors(curves: Float[np.ndarray, "cells bins"]) -> Complex[np.ndarray,
 
     Source: Batschelet 1981, Circular Statistics in Biology, chapter 1.
     """
+    curves = _as_curves(curves)
     direction = heading_centres(curves.shape[1])
     known = _filled(curves, direction)
     total = known.sum(axis=1)
     vector = np.sum(known * np.exp(1j * direction), axis=1)
     return ratio(vector, total)
+
+
+def _as_curves(curves: AnyArray) -> Float[np.ndarray, "cells bins"]:
+    """Make an array of tuning curves, of which empty bins are NaN."""
+    array = as_floats(as_array("curves", curves))
+    if array.ndim != 2:
+        raise CogmapError(f"curves have shape {array.shape}; give one row per cell, (cells, bins)")
+    return array
 
 
 def _filled(
@@ -78,12 +89,13 @@ def _filled(
     return np.where(empty, np.maximum(fitted, 0.0), curves)
 
 
-def tuning_widths(curves: Float[np.ndarray, "cells bins"]) -> Float[np.ndarray, "cells"]:
+def tuning_widths(curves: AnyArray) -> Float[np.ndarray, "cells"]:
     """Full width in rad at half the peak of tuning curves, NaN for one that is nowhere below, or silent.
 
     The arc around the highest bin to where the curve first falls through half the peak on either side, by a
     straight line between bins; bins empty for any cell are left out.
     """
+    curves = _as_curves(curves)
     seen = np.flatnonzero(~np.isnan(curves).any(axis=0))
     if seen.size == 0:
         return np.full(len(curves), np.nan)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float
 
+from cogmap.atomic import user_path
 from cogmap.cells.sessions.pynapple_objects import CELL_TYPE
 from cogmap.cells.sessions.recorded import ONE_POPULATION, Recorded, Series, Track
 from cogmap.cells.sessions.tracks import of_series
@@ -88,7 +89,7 @@ def _opened(source: Any) -> Iterator[Any]:
         ) from None
     from hdmf.build.errors import BuildError, ConstructError  # noqa: PLC0415
 
-    path = Path(source)
+    path = user_path(source)
     if not path.is_file():
         raise CogmapError(f"cannot read {path}: there is no such file")
     try:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from cogmap.atomic import user_path
 from cogmap.cells.sessions.nwb_file import is_nwb, read_nwb
 from cogmap.cells.sessions.recorded import Recorded, Track
 from cogmap.cells.sessions.samples import count_spikes, sample_durations, speeds, within
@@ -125,9 +126,9 @@ def session(
     """
     if activity is not None:
         check_choice("activity", activity, ("spikes", "rates"))
-    if not is_nwb(source) and isinstance(source, str | Path) and Path(source).is_dir():
-        track = Path(source) / TRACK if track is None else track
-        source = Path(source) / SPIKES
+    if not is_nwb(source) and isinstance(source, str | Path) and user_path(source).is_dir():
+        track = user_path(source) / TRACK if track is None else track
+        source = user_path(source) / SPIKES
     in_file = isinstance(track, str | Path)
     if in_file and heading is not None and not is_nwb(source):
         reading, heading = {**reading, "heading": heading}, None

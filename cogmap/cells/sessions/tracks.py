@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from cogmap.atomic import user_path
 from cogmap.cells.sessions.neo_objects import is_neo_signal, neo_series
 from cogmap.cells.sessions.pynapple_objects import is_pynapple, pynapple_series
 from cogmap.cells.sessions.recorded import Series, Track, track_of
@@ -54,7 +55,7 @@ def as_track(
     """
     if isinstance(track, str | Path):
         return read_track_file(
-            Path(track),
+            user_path(track),
             unit=unit,
             metres_per_unit=metres_per_unit,
             heading_unit=heading_unit,

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from jaxtyping import Float
 
+from cogmap.atomic import user_path
 from cogmap.cells.sessions.neo_objects import is_neo_train, name_trains, neo_spike_times, neo_trains
 from cogmap.cells.sessions.pynapple_objects import is_pynapple, pynapple_trains
 from cogmap.cells.sessions.recorded import ONE_POPULATION
@@ -56,7 +57,7 @@ def _read(source: Any) -> tuple[Trains, list[str]]:
 
 def _plain(source: Any) -> Trains:
     if isinstance(source, str | Path):
-        return read_spikes(Path(source))
+        return read_spikes(user_path(source))
     if isinstance(source, pd.DataFrame):
         return sort_spikes(source)
     if isinstance(source, Mapping):

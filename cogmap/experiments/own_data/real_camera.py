@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Float, UInt8
 
 from cogmap.errors import CogmapError
-from cogmap.inputs import check_views
+from cogmap.inputs import checked_views
 from cogmap.threads import one_thread
 
 FINER = 8
@@ -55,7 +55,7 @@ class RealCamera:
 
     def photograph(self, views: Any, rng: np.random.Generator) -> UInt8[np.ndarray, "views height width 3"]:
         """Give what the camera makes of what an ideal one sees, (views, height, width, 3) uint8."""
-        check_views(views)
+        views = checked_views(views)
         if self.tilt and not self.wraps:
             raise CogmapError(
                 f"tilt is {self.tilt:g} rad but these views do not wrap; tilt panoramas, and crop them"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from cogmap.atomic import atomic_write
+from cogmap.atomic import atomic_write, user_path
 from cogmap.errors import CogmapError
 from cogmap.pages.report.contents import read_contents
 
@@ -21,7 +21,7 @@ _MARK = '<meta name="generator" content="cogmap report">'
 """By which an earlier report is known."""
 
 
-def report(folder: Path, out: Path | None = None) -> Path:
+def report(folder: str | Path, out: str | Path | None = None) -> Path:
     """Write a result as one HTML page.
 
     Parameters
@@ -37,7 +37,8 @@ def report(folder: Path, out: Path | None = None) -> Path:
         When the folder is no result or damaged, something other than a report is at `out`, or it
         cannot be written.
     """
-    out = folder / "report.html" if out is None else out
+    folder = user_path(folder)
+    out = folder / "report.html" if out is None else user_path(out)
     page = _PAGES.get_template("report.html").render(found=read_contents(folder), mark=_MARK)
     with atomic_write(out) as fresh:
         if out.exists() and (not out.is_file() or _MARK.encode() not in out.read_bytes()[:1000]):

@@ -104,7 +104,7 @@ WRONG = [
     (toml(platform=[[[0.0, 0.0], [1.0, 1.0]]]), "platform"),
     (toml(platform=[[[0, 0], [1, 1], [1, 0], [0, 1]]]), "platform.0: the polygon crosses itself"),
     (toml(platform=[[[0, 0], [1, 1], [2, 2]]]), "platform.0: the polygon crosses itself or is flat"),
-    (toml(platform=[[[0, 0], [1, 0], [1, 1], [0, 0]]]), "platform.0: corner 3 and the next are the same"),
+    (toml(platform=[[[0, 0], [1, 0], [1, 1], [1, 1]]]), "platform.0: corner 2 and the next are the same"),
     (toml(walls=None), "walls"),
     (toml(walls=[]), "nothing to see"),
     (toml(walls=wall(start=[1.0, 1.0])), "zero length"),
@@ -192,3 +192,43 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     assert "not UTF-8" in message(lambda: Arena.load(tmp_path / "bytes.toml"))
     (tmp_path / "empty.toml").write_text("")
     assert "empty.toml: the TOML is empty" in message(lambda: Arena.load(tmp_path / "empty.toml"))
+
+
+def test_outlines_may_repeat_their_first_corner() -> None:
+    corners, made_of = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]], ["brick", "oak", "oak"]
+    one, other = (
+        Arena.parse(toml(platform=[ring], blocks=[{"corners": ring, "material": made_of}], sources=None))
+        for ring in (corners, [*corners, corners[0]])
+    )
+    assert one == other
+
+
+def test_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(toml(), encoding="utf-8-sig")
+    assert Arena.load(file) == Arena.parse(toml()) == Arena.parse("\ufeff" + toml())
+
+
+def test_a_tilde_is_the_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "mine.toml").write_text(toml(), encoding="utf-8")
+    assert Arena.load("~/mine.toml") == Arena.parse(toml())
+    assert "home that is not known" in message(lambda: Arena.load("~nobody-of-this-name/mine.toml"))
+
+
+def test_numbers_may_be_numpys() -> None:
+    room = Arena.create(
+        name="numpy",
+        platform=[np.array(LITTLE["platform"][0])],
+        walls=[{"start": np.zeros(2), "end": np.float32([1, 0]), "material": "brick"}],
+        floor=np.array([1, 2, 3], np.uint8),
+    )
+    assert Arena.parse(room.to_toml()) == room
+    assert type(room.floor[0]) is int
+    assert room.is_free([[1.0, 0.5], [9.0, 9.0]], 0.1).tolist() == [True, False]
+
+
+def test_solids_that_coincide_stop_a_body_as_one_does() -> None:
+    pillar = {"center": [1.0, 0.5], "radius": 0.2, "material": "brick"}
+    one, many = (Arena.parse(toml(sources=None, pillars=[pillar] * count)) for count in (1, 500))
+    np.testing.assert_array_equal(one.edges, many.edges)

@@ -83,8 +83,8 @@ BOX = {"center": (0.0, 0.0), "size": (1.0, 1.0), "material": "oak"}
     [
         ({"blocks": [{**BLOCK, "corners": HOOK[:2]}]}, "blocks.0.corners: .* at least 3 items"),
         (
-            {"blocks": [{**BLOCK, "corners": [*HOOK, HOOK[0]]}]},
-            "blocks.0.corners: corner 6 and the next are the",
+            {"blocks": [{**BLOCK, "corners": [*HOOK, HOOK[-1]]}]},
+            "blocks.0.corners: corner 5 and the next are the",
         ),
         (
             {"blocks": [{**BLOCK, "corners": [HOOK[i] for i in (0, 2, 1, 3)]}]},

@@ -3,6 +3,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import k0, k1
@@ -265,3 +266,21 @@ def test_points_out_of_bounds_are_refused(point: Point) -> None:
 def test_what_the_grid_cannot_resolve_is_refused(wrong: dict[str, Any], message: str) -> None:
     with pytest.raises(ArenaError, match=message):
         field(**wrong).concentration(np.array([[1.0, 1.0]]))
+
+
+def test_solids_that_coincide_part_the_odour_as_one_does() -> None:
+    angle = np.arange(32) * np.pi / 16
+    outline = 0.4 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    xy = np.random.default_rng(0).uniform([0.5, -1], [2.5, 1], (50, 2))
+    one, many = (field(solids=[outline] * count, cell=0.2).concentration(xy) for count in (1, 300))
+    np.testing.assert_array_equal(one, many)
+
+
+def test_ways_are_parted_by_the_walls_that_shapely_says() -> None:
+    rng = np.random.default_rng(1)
+    walls, a = rng.uniform(-3, 3, (40, 2, 2)), rng.uniform(-3, 3, (300, 2))
+    b = a + rng.normal(scale=0.2, size=a.shape)
+    ways = shapely.linestrings(np.stack([a, b], axis=1))
+    wanted = shapely.intersects(ways, shapely.multilinestrings(walls))
+    assert 0.1 < wanted.mean() < 0.9
+    np.testing.assert_array_equal(field(walls)._parted(a, b), wanted)

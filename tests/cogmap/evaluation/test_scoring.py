@@ -1,6 +1,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from cogmap.errors import CogmapError
@@ -207,3 +208,13 @@ def test_a_refined_map_is_scored_beside_its_charts(
         assert record[f"plain_{name}"] == alone[name]
     assert record["heading_median_deg"] < 1e-6
     assert record["metric_map_median_m"] < 1e-6
+
+
+def test_poses_may_be_lists_and_frames(train: tuple[Activity, np.ndarray]) -> None:
+    poses = walk(500, 3)
+    activity = ideal(poses)
+    known, there = train
+    frame = pd.DataFrame(there, columns=["x", "y", "heading"])
+    assert score(activity, poses.tolist(), train=(known, frame)) == score(activity, poses, train=train)
+    with pytest.raises(CogmapError, match=r"headings go from .* look like degrees"):
+        score(activity, poses * [1, 1, 180 / np.pi], train=train)

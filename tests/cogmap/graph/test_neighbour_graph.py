@@ -192,3 +192,15 @@ def test_one_sided_edges_are_left_out_but_for_the_nearest() -> None:
     rank = np.argsort(np.argsort(distance, axis=1), axis=1)
     expected = (rank <= 6) & (rank.T <= 6) & ~np.eye(61, dtype=bool)
     np.testing.assert_array_equal(mutual.toarray() > 0, expected)
+
+
+def test_lengths_there_and_back_may_differ_by_rounding() -> None:
+    graph = neighbour_graph(np.random.default_rng(0).random((40, 2)), 5)
+    rounded = sp.csr_array(sp.triu(graph) + sp.tril(graph).astype(np.float32).astype(float))
+    assert abs(rounded - rounded.T).nnz
+    mended = checked_graph(rounded)
+    assert not abs(mended - mended.T).nnz
+    np.testing.assert_allclose(mended.toarray(), graph.toarray(), rtol=1e-6)
+    np.testing.assert_array_equal(checked_graph(graph.toarray().tolist()).toarray(), graph.toarray())
+    with pytest.raises(CogmapError, match="there and back differ by up to"):
+        checked_graph(sp.csr_array(sp.triu(graph) * 1.01 + sp.tril(graph)))

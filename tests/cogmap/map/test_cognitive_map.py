@@ -8,8 +8,10 @@ from typing import Any
 
 import numba
 import numpy as np
+import pandas as pd
 import pytest
 import torch
+from sklearn.base import clone
 
 from arena import Arena, Brownian, Camera, Recording, explore
 from cogmap import Activity, CogmapError, CognitiveMap, OpenSeamWarning, UntrustedMapWarning, score
@@ -490,3 +492,69 @@ def test_what_cannot_be_refined_says_so_and_stays_as_it_was(
     assert seen.plain is None
     assert seen.novelty is None
     assert_same(seen, refined.cmap.perceive(refined.walk.views[:50]).plain)
+
+
+@pytest.fixture(scope="module")
+def numpys(stroll: Recording) -> CognitiveMap:
+    """A map of the same walk, told everything by other types than `learnt`."""
+    counts = np.array([150, 20])
+    cmap = CognitiveMap(charts=counts[0], components=counts[1], smell=np.float32(0.5), seed=np.uint8(0))
+    return cmap.fit(torch.from_numpy(stroll.views), pd.DataFrame(stroll.odours))
+
+
+def test_numbers_of_numpy_views_of_torch_and_odours_of_pandas_make_the_same_map(
+    numpys: CognitiveMap, learnt: CognitiveMap, tmp_path: Path
+) -> None:
+    assert same(numpys, learnt)
+    numpys.save(tmp_path / "map")
+    loaded = CognitiveMap.load(tmp_path / "map")
+    assert same(loaded, learnt)
+    assert {type(value) for value in loaded.get_params().values()} <= {int, float, bool, str, type(None)}
+
+
+@pytest.mark.filterwarnings("ignore::cogmap.errors.UntrustedMapWarning")
+def test_lists_of_views_are_perceived(stroll: Recording, learnt: CognitiveMap) -> None:
+    assert_same(learnt.perceive(list(stroll.views[:5])), learnt.perceive(stroll.views[:5]))
+    assert_same(
+        learnt.perceive(torch.from_numpy(stroll.views[:5]), odours=stroll.odours[:5].tolist()),
+        learnt.perceive(stroll.views[:5], odours=stroll.odours[:5]),
+    )
+
+
+@pytest.mark.parametrize(
+    "setting",
+    [
+        {"seed": -1},
+        {"seed": np.int64(-1)},
+        {"smell": np.nan},
+        {"smell": np.float32(-1)},
+        {"epoch": np.int64(0)},
+    ],
+)
+def test_a_bad_setting_is_refused_before_anything_is_learnt(
+    stroll: Recording, setting: dict[str, Any]
+) -> None:
+    (name,) = setting
+    cmap = CognitiveMap(charts=150, **setting)
+    with pytest.raises(CogmapError, match=f"{name} is"):
+        cmap.fit(stroll.views, stroll.odours)
+    assert not hasattr(cmap, "_network")
+
+
+def test_a_map_is_cloned_and_told_its_parameters(learnt: CognitiveMap) -> None:
+    blank = clone(learnt)
+    assert blank.get_params() == learnt.get_params()
+    assert not hasattr(blank, "_network")
+    assert blank.set_params(charts=7, seed=np.int64(2)).charts == 7
+    with pytest.raises(CogmapError, match="unknown parameter 'chart'; choose one of charts"):
+        blank.set_params(chart=7)
+    with pytest.raises(CogmapError, match="has learnt with other parameters"):
+        learnt.set_params(charts=7)
+    assert learnt.charts == 150
+
+
+def test_a_map_tells_what_it_is_and_whether_it_has_learnt(learnt: CognitiveMap, cmap: CognitiveMap) -> None:
+    assert repr(clone(learnt)) == "CognitiveMap(charts=150, components=20)"
+    told = "that has learnt from views of 15×90 pixels and 3 odorants: "
+    assert repr(learnt) == f"<CognitiveMap(charts=150, components=20) {told}{learnt.reason_}>"
+    assert repr(cmap).endswith(f"{told}trusted>")

@@ -1,5 +1,6 @@
 from pathlib import Path
 
+import numpy as np
 import pytest
 import torch
 
@@ -55,3 +56,19 @@ def test_another_version_is_told(tmp_path: Path) -> None:
     (tmp_path / "map" / "map.json").write_text('{"version": 2}', encoding="utf-8")
     with pytest.raises(CogmapError, match="map of version 2, not 6; learn it again, or load it with"):
         read_state(tmp_path / "map")
+
+
+def test_numbers_of_numpy_are_saved_and_what_is_none_is_refused(tmp_path: Path) -> None:
+    settings = {"charts": np.int64(3), "smell": np.float32(0.5), "first": np.bool_(1)}
+    write_state(tmp_path / "map", WEIGHTS, settings, {})
+    assert read_state(tmp_path / "map")[1] == {"charts": 3, "smell": 0.5, "first": True}
+    with pytest.raises(CogmapError, match="cannot be saved"):
+        write_state(tmp_path / "other", WEIGHTS, {"charts": {1, 2}}, {})
+    assert not (tmp_path / "other").exists()
+
+
+def test_a_tilde_is_the_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    write_state("~/map", WEIGHTS, {}, {})
+    assert read_state(Path("~/map"))[1:] == ({}, {})
+    assert (tmp_path / "map").is_dir()

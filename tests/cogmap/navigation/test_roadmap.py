@@ -2,11 +2,13 @@ from itertools import pairwise
 
 import networkx as nx
 import numpy as np
+import pandas as pd
 import pytest
 import scipy.sparse as sp
 import shapely
+import torch
 
-from cogmap.errors import CogmapError
+from cogmap.errors import CogmapError, SeparatePiecesWarning
 from cogmap.graph.neighbour_graph import neighbour_graph
 from cogmap.navigation.roadmap import VisualRoadmap
 
@@ -94,9 +96,22 @@ def test_one_view_is_the_whole_way() -> None:
 def test_no_way_leads_between_separate_pieces() -> None:
     points = np.concatenate([np.arange(10.0), 100 + np.arange(5.0)])[:, None]
     planner = VisualRoadmap(points, neighbours=2)
-    with pytest.raises(CogmapError, match="separate pieces of the neighbour graph, of 10 and 5 views"):
+    refused = pytest.raises(CogmapError, match="separate pieces of the neighbour graph, of 10 and 5 views")
+    with refused, pytest.warns(SeparatePiecesWarning, match=r"2 pieces \(of 10, 5 points\)"):
         planner.plan(points[0], points[-1])
     assert planner.plan(points[10], points[14])[-1] == 14
+
+
+def test_features_may_be_lists_frames_and_tensors() -> None:
+    points = np.random.default_rng(0).random((60, 3))
+    way = VisualRoadmap(points).plan(points[0], points[9]).tolist()
+    for features, view in (
+        (points.tolist(), points[0].tolist()),
+        (torch.from_numpy(points), torch.from_numpy(points[0])),
+        (pd.DataFrame(points), pd.Series(points[0])),
+        (sp.csr_matrix(points), sp.csr_matrix(points[:1])),
+    ):
+        assert VisualRoadmap(features).plan(view, points[9:10]).tolist() == way
 
 
 def test_features_that_do_not_fit_are_refused() -> None:

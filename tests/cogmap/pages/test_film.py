@@ -35,3 +35,9 @@ def test_what_is_there_stays_and_other_kinds_are_refused(tmp_path: Path) -> None
     with pytest.raises(CogmapError, match=r"not written as \.avi"):
         write_film(VIEWS, tmp_path / "film.avi")
     assert [path.name for path in tmp_path.iterdir()] == ["film.mp4"]
+
+
+def test_frames_of_odd_sizes_and_a_tilde_are_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    write_film([view[:, :7] for view in VIEWS], "~/odd.mp4")
+    assert cv2.VideoCapture(str(tmp_path / "odd.mp4")).read()[1].shape == (30, 14, 3)

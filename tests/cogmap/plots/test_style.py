@@ -1,8 +1,10 @@
 from pathlib import Path
 
+import cv2
 import matplotlib as mpl
 import numpy as np
 import pytest
+from IPython.core.formatters import DisplayFormatter
 from matplotlib.colors import to_hex
 
 import cogmap.plots
@@ -78,3 +80,10 @@ def test_a_legend_beside_covers_nothing() -> None:
     assert legend is not None
     assert legend.get_window_extent().x0 >= axes.get_window_extent().x1
     assert legend.get_window_extent().x1 <= figure.bbox.x1
+
+
+def test_a_figure_shows_itself_in_a_notebook() -> None:
+    figure, _ = style.new_panels(3.0, 2.0, 1, 2)
+    shown, _ = DisplayFormatter().format(figure)
+    image = cv2.imdecode(np.frombuffer(shown["image/png"], np.uint8), cv2.IMREAD_COLOR)
+    assert image.shape == (220, 330, 3)

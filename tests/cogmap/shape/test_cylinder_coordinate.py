@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from cogmap.errors import CogmapError
+from cogmap.errors import CogmapError, SeparatePiecesWarning
 from cogmap.shape.circular import circular_coordinate
 from cogmap.shape.cylinder_coordinate import height_coordinate
 from cogmap.shape.isomap import LandmarkIsomap
@@ -57,7 +57,8 @@ def test_potential_of_a_path() -> None:
 
 def test_points_without_a_phase_have_no_height() -> None:
     X, truth = cylinder(1500, np.random.default_rng(5))
-    height = measure(np.concatenate([X, X[:100] + 50]))
+    with pytest.warns(SeparatePiecesWarning, match="2 pieces"):
+        height = measure(np.concatenate([X, X[:100] + 50]))
     assert np.isnan(height[1500:]).all()
     assert explained(height[:1500], truth) > 0.97
 

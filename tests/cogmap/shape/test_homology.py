@@ -2,8 +2,10 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 import scipy.sparse as sp
+import torch
 from scipy.spatial.distance import cdist
 
 from cogmap.errors import CogmapError
@@ -311,3 +313,28 @@ def test_unknown_metric_gets_one_sentence() -> None:
     # The run-time type check of the tests would catch it earlier in `betti` itself.
     with pytest.raises(CogmapError, match="'cosine'; choose one of geodesic, euclidean, precomputed"):
         _check_options("cosine", 2, (400, 150), 3)
+
+
+def rounded(kind: str) -> np.ndarray:
+    angle = np.linspace(0, 2 * np.pi, 120, endpoint=False)
+    X = np.column_stack([np.cos(angle), np.sin(angle)])
+    if kind == "correlation":
+        return 1 - np.corrcoef(np.exp(3 * np.cos(angle[:, None] - angle[::3])))
+    squares = (X**2).sum(axis=1)
+    X, squares = (array.astype(kind) for array in (X, squares))
+    return np.sqrt(np.maximum(squares[:, None] + squares - 2 * X @ X.T, 0))
+
+
+@pytest.mark.parametrize("kind", ["correlation", "float64", "float32"])
+def test_distances_are_symmetric_but_for_rounding(kind: str) -> None:
+    D = rounded(kind)
+    assert np.diagonal(D).any() or (D != D.T).any()
+    assert betti(D, "precomputed", max_dimension=1, draws=1).numbers == (1, 1)
+
+
+@pytest.mark.parametrize("kind", [np.ndarray.tolist, pd.DataFrame, torch.from_numpy])
+def test_clouds_and_distances_may_be_lists_frames_and_tensors(kind: Callable[[np.ndarray], object]) -> None:
+    D = rounded("float64")
+    for X, metric in ((D[:, :3], "euclidean"), (D, "precomputed")):
+        one, other = (betti(given, metric, max_dimension=0, seed=np.int64(1)) for given in (X, kind(X)))
+        np.testing.assert_array_equal(one.bars[0], other.bars[0])

@@ -12,7 +12,7 @@ from sklearn.preprocessing import normalize
 from sklearn.utils.estimator_checks import parametrize_with_checks
 from threadpoolctl import threadpool_limits
 
-from cogmap.errors import CogmapError
+from cogmap.errors import CogmapError, SeparatePiecesWarning
 from cogmap.shape.isomap import LandmarkIsomap
 
 
@@ -123,7 +123,8 @@ def test_pieces_keep_their_own_maps() -> None:
     rng = np.random.default_rng(8)
     parts = [ring(300, rng), roll(500, rng)[:, :2] + 100, rng.normal(size=(10, 2)) - 500]
     X = np.concatenate(parts)
-    model = LandmarkIsomap(3, neighbours=8, landmarks=120).fit(X)
+    with pytest.warns(SeparatePiecesWarning, match=r"3 pieces \(of 500, 300, 10 points\)"):
+        model = LandmarkIsomap(3, neighbours=8, landmarks=120).fit(X)
     assert model.pieces_.number == 3
     np.testing.assert_array_equal(model.pieces_.sizes, [500, 300, 10])
     np.testing.assert_array_equal(model.pieces_.labels, np.repeat([1, 0, 2], [300, 500, 10]))
@@ -141,7 +142,8 @@ def test_views_without_words_stay_alone() -> None:
     X = sp.csr_array(
         sp.vstack([words(200, np.random.default_rng(9)), sp.csr_array((3, 60))]), dtype=np.float32
     )
-    model = LandmarkIsomap(2, metric="cosine").fit(X)
+    with pytest.warns(SeparatePiecesWarning, match="2 pieces"):
+        model = LandmarkIsomap(2, metric="cosine").fit(X)
     np.testing.assert_array_equal(model.pieces_.sizes, [200, 3])
     # They are the same view, at one place.
     np.testing.assert_allclose(model.embedding_[200:], 0, atol=1e-9)

@@ -1,6 +1,7 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from cogmap import CogmapError, Plan
@@ -105,3 +106,23 @@ def test_what_cannot_be_is_said_in_one_line(text: str, says: str, tmp_path: Path
 def test_a_file_that_is_not_there() -> None:
     with pytest.raises(CogmapError, match=r"cannot read the sweep nowhere\.toml"):
         Plan.load("nowhere.toml")
+
+
+def test_numbers_may_be_numpys() -> None:
+    plan = Plan.create(
+        experiment="toy",
+        views=np.int64(400),
+        seeds=np.arange(2),
+        grid={"map.charts": list(np.array([50, 60])), "nose.noise": np.linspace(0.25, 0.5, 2)},
+    )
+    plain = {"map.charts": [50, 60], "nose.noise": [0.25, 0.5]}
+    assert plan == Plan.create(experiment="toy", views=400, seeds=(0, 1), grid=plain)
+    assert Plan.parse(plan.to_toml()) == plan
+
+
+def test_a_byte_order_mark_is_no_text_and_a_tilde_is_the_home(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "sweep.toml").write_text(TOML, encoding="utf-8-sig")
+    assert Plan.load("~/sweep.toml") == Plan.parse(TOML)

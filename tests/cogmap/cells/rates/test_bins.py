@@ -116,3 +116,18 @@ def test_bad_input_is_refused() -> None:
         bin_edges(np.array([[0.0, np.nan]]))
     with pytest.raises(CogmapError, match="2 heading bins"):
         heading_bin(np.zeros(1), 2)
+
+
+@pytest.mark.parametrize(("size", "unit"), [((100, 100), "1000 by 1000"), ((640, 480), "6400 by 4800")])
+def test_positions_in_centimetres_or_pixels_are_told(size: tuple[int, int], unit: str) -> None:
+    positions = np.array([[0, 0], size])
+    with pytest.raises(CogmapError, match=f"by {size[1]} make {unit} bins .* centimetres or pixels"):
+        bin_edges(positions)
+    assert max(bin_edges(positions, size[0] / 50).shape) == 50
+
+
+def test_many_bins_are_made_for_many_views() -> None:
+    corners = np.array([[0, 0], [6, 5]])
+    assert bin_edges(np.tile(corners, (38_000, 1)), 0.02).shape == (250, 300)
+    with pytest.raises(CogmapError, match="70000 positions spread over 6 by 5 make 300 by 250 bins"):
+        bin_edges(np.tile(corners, (35_000, 1)), 0.02)

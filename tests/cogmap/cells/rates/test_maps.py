@@ -1,8 +1,10 @@
 from collections.abc import Callable
 
 import numpy as np
+import pandas as pd
 import pynapple as nap
 import pytest
+import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import ndimage
@@ -145,3 +147,15 @@ def test_bad_input_is_refused(wander: Callable) -> None:
         rate_maps(rates, positions, edges=BinEdges(edges.x + 100, edges.y))
     with pytest.raises(CogmapError, match="1 maps for 2 cells"):
         rate_maps(rates, positions).of_cells(2)
+
+
+@pytest.mark.parametrize("kind", [np.ndarray.tolist, pd.DataFrame, torch.from_numpy])
+def test_samples_may_be_lists_frames_and_tensors(kind: Callable, wander: Callable) -> None:
+    positions, _ = wander(300)
+    rates = np.random.default_rng(2).random((300, 2))
+    visited = rate_maps(rates, positions).visited
+    one, other = (
+        rate_maps(rates, positions),
+        rate_maps(kind(rates), kind(positions), visited=visited.tolist()),
+    )
+    np.testing.assert_array_equal(one.rates, other.rates)

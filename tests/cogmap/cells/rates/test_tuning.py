@@ -1,6 +1,7 @@
 from collections.abc import Callable
 
 import numpy as np
+import pandas as pd
 import pynapple as nap
 import pytest
 from astropy.stats import circmoment
@@ -139,3 +140,19 @@ def test_bad_input_is_refused() -> None:
         tuning_curves(np.full((2, 1), np.inf), np.zeros(2))
     with pytest.raises(CogmapError, match="1 heading bins"):
         tuning_curves(np.ones((2, 1)), np.zeros(2), 1)
+
+
+def test_headings_in_degrees_are_refused() -> None:
+    headings = np.arange(0.0, 360.0, 5.0)
+    rates = np.ones((72, 2))
+    with pytest.raises(CogmapError, match=r"look like degrees; give numpy\.deg2rad\(headings\)"):
+        tuning_curves(rates, headings)
+    expected = tuning_curves(rates, np.deg2rad(headings))
+    np.testing.assert_array_equal(tuning_curves(rates.tolist(), pd.Series(np.deg2rad(headings))), expected)
+
+
+def test_curves_may_be_lists_and_frames() -> None:
+    curves = np.array([[1.0, 4, 2, np.nan], [2, 1, 1, 5]])
+    for measure in (mean_vectors, tuning_widths):
+        np.testing.assert_array_equal(measure(pd.DataFrame(curves)), measure(curves))
+        np.testing.assert_array_equal(measure(curves.tolist()), measure(curves))
