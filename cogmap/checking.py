@@ -11,7 +11,7 @@ from pathlib import Path
 
 from arena import Arena, ArenaError, Recording
 from arena.recordings import storage
-from arena.recordings.importing import BEGUN, unfinished
+from arena.recordings.begun import BEGUN, unfinished
 from arena.recordings.rescue import examine
 from cogmap.atomic import METRICS, user_path
 from cogmap.control import MotorModel

@@ -16,18 +16,16 @@ import numba
 import numpy as np
 from jaxtyping import UInt8
 
-from arena.atomic import atomic_write, sync
+from arena.atomic import sync
 from arena.errors import ArenaError
 from arena.recordings import storage
+from arena.recordings.begun import BEGUN, Begun, note
 from arena.recordings.beside import Beside
 from arena.recordings.developing import Darkroom, in_order, opened
 from arena.recordings.images import Item, Pictures
 from arena.recordings.lens import Lens
 from arena.recordings.resuming import refuse_another
 from arena.recordings.sharding import SHARD, is_complete, write_frames
-
-BEGUN = "begun.json"
-"""File in a folder that is not a recording yet: what is being imported, and how far it is."""
 
 
 class Imported(NamedTuple):
@@ -78,7 +76,7 @@ def import_to_disk(
     """
     darkroom, items = opened(pictures, lens, beside, progress=progress)
     wanted = _described(pictures, lens)
-    begun = _Begun.at(path, wanted)
+    begun = Begun.at(path, wanted)
     try:
         views = sum(_stream(path, begun, wanted, darkroom, _of_source(items)))
         columns, notes = beside.matched(views, pictures.rate)
@@ -97,57 +95,6 @@ def import_to_disk(
         raise failed.error from None
 
 
-def unfinished(path: Path) -> int | None:
-    """Tell how many views an import has left that was killed; None where there is no such.
-
-    Raises
-    ------
-    ArenaError
-        When it is damaged.
-    """
-    if not (path / BEGUN).is_file():
-        return None
-    return _Begun.read(path).views
-
-
-class _Begun(NamedTuple):
-    """How far an import is."""
-
-    shards: list[int]
-    """A checksum of what each shard was made from; it grows while one goes on."""
-    views: int
-    whole: storage.Stored | None = None
-    """The recording, if it is one already."""
-
-    @classmethod
-    def at(cls, path: Path, wanted: dict[str, Any]) -> "_Begun":
-        """Begin, or find what was begun, which must be of this."""
-        if not path.exists():
-            with atomic_write(path, ArenaError, overwrite=False) as folder:
-                folder.mkdir()
-                _note(folder, wanted, [], 0)
-            return cls([], 0)
-        if (path / BEGUN).is_file():
-            return cls.read(path, wanted)
-        stored = storage.load(path)
-        refuse_another(path, stored.attributes, wanted)
-        return cls(list(stored.attributes["shards"]), len(stored.views), stored)
-
-    @classmethod
-    def read(cls, path: Path, wanted: dict[str, Any] | None = None) -> "_Begun":
-        """Read how far it is."""
-        try:
-            told = json.loads((path / BEGUN).read_text(encoding="utf-8"))
-            begun = cls([int(shard) for shard in told["shards"]], int(told["views"]))
-            sound = len(begun.shards) == -(-begun.views // SHARD)
-        except (OSError, ValueError, LookupError, TypeError):
-            sound = False
-        if not sound:
-            raise ArenaError(f"{path / BEGUN} is damaged; remove {path} and import again")
-        refuse_another(path, told, wanted or {})
-        return begun
-
-
 def _described(pictures: Pictures, lens: Lens) -> dict[str, Any]:
     """Tell of what must stay the same for an import to go on, as it will read back from JSON."""
     told = {"source": pictures.described, "lens": lens.model_dump(), "opencv": cv2.__version__}
@@ -156,7 +103,7 @@ def _described(pictures: Pictures, lens: Lens) -> dict[str, Any]:
 
 
 def _stream(
-    path: Path, begun: _Begun, wanted: dict[str, Any], darkroom: Darkroom, items: Iterator[Item]
+    path: Path, begun: Begun, wanted: dict[str, Any], darkroom: Darkroom, items: Iterator[Item]
 ) -> Iterator[int]:
     """Write shard after shard, or see that they are there; give how many views each has."""
     shards, views, folder = begun.shards, begun.views, path / "views"
@@ -177,7 +124,7 @@ def _stream(
             if known is None:
                 shards.append(sum_.checksum)
                 views += sum_.views
-                _note(path, wanted, shards, views)
+                note(path, wanted, shards, views)
             yield sum_.views
     if number < len(shards):
         raise ArenaError(_CHANGED.format(path=path))
@@ -233,11 +180,6 @@ def _of_source(items: Iterator[Item]) -> Iterator[Item]:
         yield from items
     except OSError as error:
         raise _SourceFailedError(error) from None
-
-
-def _note(path: Path, wanted: dict[str, Any], shards: list[int], views: int) -> None:
-    with atomic_write(path / BEGUN) as fresh:
-        fresh.write_text(json.dumps({**wanted, "shards": shards, "views": views}), encoding="utf-8")
 
 
 def _finish(

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, SupportsFloat, overload
+from typing import TYPE_CHECKING, Any, SupportsFloat, overload
 
 import numpy as np
 from jaxtyping import Float32, Float64, Shaped, UInt8
@@ -11,13 +11,13 @@ from jaxtyping import Float32, Float64, Shaped, UInt8
 from arena.errors import ArenaError
 from arena.paths import user_path
 from arena.recordings import choosing, storage
-from arena.recordings.beside import Beside
+from arena.recordings.begun import unfinished
 from arena.recordings.choosing import Moment, Several, WholeNumber
-from arena.recordings.images import pictures_of
-from arena.recordings.importing import import_to_disk, import_to_memory, unfinished
-from arena.recordings.lens import Kind, Lens
 from arena.recordings.sharding import shards, write_shards
 from arena.recordings.storage import StoredViews
+
+if TYPE_CHECKING:
+    from arena.recordings.lens import Kind
 
 _FIELDS = ("times", "odours", "poses", "commands", "joints")
 """Arrays by the names that they have on disk, too."""
@@ -136,7 +136,7 @@ class Recording:
         source: Any,
         *,
         out: str | Path | None = None,
-        kind: Kind | None = None,
+        kind: "Kind | None" = None,
         width: int | None = None,
         height: int | None = None,
         ahead: SupportsFloat = 0.0,
@@ -195,6 +195,12 @@ class Recording:
             For pictures or tables that cannot be read or do not go together, and an `out` that holds
             something else.
         """
+        # OpenCV and pandas, which only imports need, load slowly.
+        from arena.recordings.beside import Beside  # noqa: PLC0415
+        from arena.recordings.images import pictures_of  # noqa: PLC0415
+        from arena.recordings.importing import import_to_disk, import_to_memory  # noqa: PLC0415
+        from arena.recordings.lens import Lens  # noqa: PLC0415
+
         pictures = pictures_of(source)
         lens = Lens(kind=kind, width=width, height=height, ahead=ahead, clockwise=clockwise, mirror=mirror)
         beside = Beside.read(times=times, rate=rate, poses=poses, signals=signals, columns=columns, log=log)

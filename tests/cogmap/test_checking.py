@@ -1,6 +1,7 @@
 import json
 import shutil
 import sys
+from collections.abc import Iterator
 from importlib import resources
 from pathlib import Path
 
@@ -57,7 +58,7 @@ def place(written: Path, tmp_path: Path) -> Path:
     ("name", "kind", "version", "parts"),
     [
         ("walk.zarr", "recording", 4, {"views": "300 of 300", "times": "300", "odours": "300×2"}),
-        ("map", "map", 6, {"settings": "9", "learnt": "5"}),
+        ("map", "map", 6, {"settings": "10", "learnt": "6"}),
         ("result", "result", None, {"files": "5 of 5"}),
         ("sweep", "sweep", 2, {"points": "2 of 2"}),
         ("room.toml", "room", None, {"name": "pillar", "walls": "4"}),
@@ -96,6 +97,24 @@ def test_what_is_damaged_and_what_can_be_saved_is_told(place: Path, file: str, a
     with pytest.raises(CogmapError, match=said):
         raise CogmapError(found.sentence)
     assert len(found.sentence.splitlines()) == 1
+
+
+def test_an_import_that_was_killed_is_half_written(tmp_path: Path) -> None:
+    frames = np.random.default_rng(0).integers(0, 256, (300, 15, 90, 3), dtype=np.uint8)
+
+    def killed() -> Iterator[np.ndarray]:
+        yield from frames[:280]
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        Recording.from_images(killed(), out=tmp_path / "walk.zarr")
+    found = check(tmp_path / "walk.zarr")
+    assert (found.kind, found.whole, found.parts) == ("recording", False, {"views": "256"})
+    assert found.sentence.endswith(
+        "half-written: 256 views are there; the same `import` command goes on where it stopped"
+    )
+    Recording.from_images(iter(frames), out=tmp_path / "walk.zarr")
+    assert check(tmp_path / "walk.zarr").whole
 
 
 def test_points_of_a_sweep_are_those_of_their_names(place: Path) -> None:

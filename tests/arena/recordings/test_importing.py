@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 
 from arena.errors import ArenaError
-from arena.recordings import importing, sharding, storage
-from arena.recordings.importing import BEGUN
+from arena.recordings import sharding, storage
+from arena.recordings.begun import BEGUN, unfinished
 from arena.recordings.recording import Recording
 from arena.recordings.sharding import file
 
@@ -327,10 +327,10 @@ def test_a_disk_that_fills_up_loses_nothing(
 ) -> None:
     path, real = tmp_path / "rec.zarr", sharding._write
 
-    def full(file: Path, frames: Any) -> None:
+    def full(file: Path, head: Any, frames: Any) -> None:
         if "1" in file.parts:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        real(file, frames)
+        real(file, head, frames)
 
     monkeypatch.setattr(sharding, "_write", full)
     with pytest.raises(
@@ -338,7 +338,7 @@ def test_a_disk_that_fills_up_loses_nothing(
     ):
         Recording.from_images(iter(FRAMES), out=path, signals=SIGNALS)
     monkeypatch.undo()
-    assert importing.unfinished(path) == 256
+    assert unfinished(path) == 256
     Recording.from_images(iter(FRAMES), out=path, signals=SIGNALS)
     assert snapshot(path) == snapshot(whole)
 
