@@ -44,8 +44,16 @@ def write_state(
 
 
 def _plain(value: Any) -> Any:
-    """Give a number of numpy's as Python's, which JSON knows."""
-    return value.item() if isinstance(value, np.generic) else value
+    """Give a number of numpy's as Python's, which JSON knows, and refuse what it does not know."""
+    if isinstance(value, np.generic):
+        return value.item()
+    try:
+        json.dumps(value)
+    except TypeError:
+        raise CogmapError(
+            f"{value!r} cannot be saved; give settings that are numbers, words or None"
+        ) from None
+    return value
 
 
 def read_state(

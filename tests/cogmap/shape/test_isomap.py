@@ -16,6 +16,7 @@ from cogmap.errors import CogmapError, SeparatePiecesWarning
 from cogmap.shape.isomap import LandmarkIsomap
 
 
+@pytest.mark.filterwarnings("ignore::cogmap.errors.SeparatePiecesWarning")  # some of its clouds are blobs
 @parametrize_with_checks(
     [
         LandmarkIsomap(2, neighbours=5),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from arena import Arena, Box, Wall
-from cogmap import CogmapError
+from cogmap import CogmapError, SeparatePiecesWarning
 from cogmap.evaluation.deviation import path_deviation
 from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.paper import roadmap as module
@@ -90,7 +90,8 @@ def test_plans_lead_from_start_through_views_to_goal_and_fail_where_there_is_no_
     pairs = np.array(
         [[[0.2, 0.1, 0], [0.5, -0.1, 0.3]], [[0.2, 0, 0], [9.5, 0, 0]], [[0.2, 0, 0], [5, 0, 0]]]
     )
-    found = _plan(planner, pairs[:, :, :1], pairs, poses)
+    with pytest.warns(SeparatePiecesWarning, match="no way leads from one to another"):
+        found = _plan(planner, pairs[:, :, :1], pairs, poses)
     assert found[0].route.tolist() == [2, 3, 4, 5]
     np.testing.assert_array_equal(found[0].path, [pairs[0, 0], *poses[2:6], pairs[0, 1]])
     assert len(found[1].route) == 0
