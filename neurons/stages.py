@@ -291,7 +291,7 @@ class MetricMapStage(RecallStage):
 
     def finish(self, circuit: Circuit) -> None:
         """Solve for positions and offsets, and forget the sums they were made of."""
-        circuit.metric_map.solve()
+        circuit.metric_map.solve(circuit.place)
         circuit.metric_map.begin_again()
 
 
@@ -303,7 +303,7 @@ class CorrectedMetricMapStage(MetricMapStage):
 
     def finish(self, circuit: Circuit) -> None:
         """Solve for positions and what is left of the offsets; let each place cell keep to one place."""
-        circuit.metric_map.solve()
+        circuit.metric_map.solve(circuit.place)
         edges = Atlas.of(circuit.charts.points).edges
         smells, phases = circuit.readout.intercepts, circuit.readout.phases
         circuit.place.disambiguate(smells, phases, edges)

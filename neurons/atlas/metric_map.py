@@ -1,5 +1,6 @@
 """The metric map of places, and the compass's offset at each, learnt from the order of views alone."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import torch
@@ -41,6 +42,9 @@ class MetricMap(nn.Module):
     `diagnosis` says so. Sums can be added to by a stream and merged between maps of the same place cells; in
     double precision, as S⁻¹ makes much of little.
 
+    Of few views with noisy smells each half would follow its own noise. Then the maps of all places are drawn
+    towards one for all of them, which is affine in o: x_p = x_0 + B c_p, B_p = B.
+
     Parameters
     ----------
     cells, odorants
@@ -51,6 +55,8 @@ class MetricMap(nn.Module):
         Largest turn per step of a displacement, rad; a look around turns more.
     ridge
         Prior on the map, as a fraction of the mean square of a feature's displacement.
+    stiffer
+        Priors on what is not one affine map, where `ridge` alone does not suffice: the best is taken.
     least_r2
         Least share of the displacements of one half of a walk that the other half foretells, in a map worth
         having: .88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each
@@ -70,10 +76,12 @@ class MetricMap(nn.Module):
         lag: int = 4,
         straight: float = 0.25,
         ridge: float = 1e-3,
+        stiffer: Sequence[float] = (0.1, 1.0, 10.0),
         least_r2: float = 0.8,
     ) -> None:
         super().__init__()
         self.lag, self.straight, self.ridge, self.least_r2 = lag, straight, ridge, least_r2
+        self.stiffer = tuple(stiffer)
         features = cells * (odorants + 1)
         self.spread: Tensor = nn.Buffer(torch.zeros(2, features, features, dtype=torch.double))
         self.ahead: Tensor = nn.Buffer(torch.zeros(2, cells, features, 2, dtype=torch.double))
@@ -117,17 +125,24 @@ class MetricMap(nn.Module):
             self.shared[number] += w.T @ (power[:, None] * w)
             self.counted[number] += torch.stack([power.sum(), mine.sum()])
 
-    def solve(self) -> None:
+    def solve(self, place: PlaceCells) -> None:
         """Learn positions and offsets from the sums, if either half of the walk foretells the other."""
         # fewer displacements than cells leave offsets that nothing determines
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
         if min(half.pairs for half in halves) < len(self.offsets):
             return
-        pairs = (halves, halves[::-1])
-        foretold = [mine.cross_validated_r2(*its.solve(self.ridge)) for mine, its in pairs]
+        whole = torch.eye(len(self.positions)).to(self.spread)
+        prior = self.ridge * whole
+        foretold = _foretold(halves, prior)
+        if min(foretold) < self.least_r2:
+            bent = whole - _affine(place)
+            tried = [prior, *(prior + stiffness * bent for stiffness in self.stiffer)]
+            foretold, prior = max(
+                ((_foretold(halves, each), each) for each in tried), key=lambda it: min(it[0])
+            )
         self.cross_validated_r2 = self.cross_validated_r2.new_tensor(foretold)
         if not self.diagnosis():
-            positions, turns = self._evidence(slice(0, 2)).solve(self.ridge)
+            positions, turns = self._evidence(slice(0, 2)).solve(prior)
             self.positions = torch.view_as_real(positions).float()
             self.offsets = wrap_angle(self.offsets + turns.angle().float())
 
@@ -185,11 +200,12 @@ class _Evidence(NamedTuple):
     power: float
     pairs: float
 
-    def solve(self, ridge: float) -> tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]:
-        """Give β and f."""
+    def solve(
+        self, prior: Float[Tensor, "features features"]
+    ) -> tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]:
+        """Give β and f; the prior is relative to the mean square of a feature, as sums grow with the walk."""
         # cells that the walk never came by leave S singular
-        # relative to the mean square of a feature, as sums grow with the walk
-        prior = ridge * self.spread.diagonal().mean() * torch.eye(len(self.spread)).to(self.spread)
+        prior = self.spread.diagonal().mean() * prior
         # S is real: two real right-hand sides cost half of a complex system
         parts = torch.view_as_real(self.ahead.mH.resolve_conj())
         solved = torch.linalg.solve(self.spread + prior, parts.flatten(1)).reshape(parts.shape)
@@ -213,6 +229,25 @@ class _Evidence(NamedTuple):
         looked = (turns.conj() @ self.shared.to(torch.cdouble) @ turns).real
         both = (turns.conj() @ self.ahead @ positions).real
         return 1 - float(moved + looked - 2 * both) / self.power
+
+
+def _foretold(halves: list[_Evidence], prior: Float[Tensor, "features features"]) -> tuple[float, float]:
+    """Share of the displacements of either half that the map of the other foretells."""
+    one, other = halves
+    return one.cross_validated_r2(*other.solve(prior)), other.cross_validated_r2(*one.solve(prior))
+
+
+def _affine(place: PlaceCells) -> Float[Tensor, "features features"]:
+    """Project on what is one affine map for all: x_p = x_0 + B c_p, and B_p = B."""
+    centres = place.centres.double()
+    cells, odorants = centres.shape
+    # columns are x_0 and, of B, one odorant after the other
+    columns = centres.new_zeros(cells, odorants + 1, odorants + 1)
+    columns[:, 0, 0] = 1
+    columns[:, 0, 1:] = centres
+    columns[:, 1:, 1:] = torch.eye(odorants).to(columns)
+    basis: Tensor = torch.linalg.qr(columns.flatten(0, 1)).Q
+    return basis @ basis.T
 
 
 def _patches(

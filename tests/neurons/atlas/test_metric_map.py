@@ -3,10 +3,12 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 import torch
+from scipy.spatial import procrustes
 from sklearn.linear_model import Ridge
+from sklearn.metrics import r2_score
 from torch import Tensor
 
-from neurons.atlas.metric_map import MetricMap, _Evidence, _patches
+from neurons.atlas.metric_map import MetricMap, _affine, _Evidence, _patches
 from neurons.layers.place_cells import PlaceCells
 
 SOURCES = torch.tensor([[-0.2, -0.1], [1.2, 0.1], [0.4, 1.3]])
@@ -66,7 +68,7 @@ def learn(
     metric_map = MetricMap(len(cells.centres), 3, **settings)
     teach(metric_map, cells, walk, batch=batch)
     if solve:
-        metric_map.solve()
+        metric_map.solve(cells)
     return metric_map
 
 
@@ -106,7 +108,7 @@ def test_a_second_time_on_corrected_headings_the_offset_is_nearer(cells: PlaceCe
         sums.any() for sums in (twice.spread, twice.ahead, twice.shared, twice.counted, twice.seen)
     )
     teach(twice, cells, walked)
-    twice.solve()
+    twice.solve(cells)
     assert not twice.diagnosis()
     left = [spread_of_angle(off(fresh.place) - each(cells, fresh.odour).offset) for each in (once, twice)]
     assert left[1] < 0.75 * left[0]
@@ -143,7 +145,7 @@ def test_map_is_ridge_regression_and_the_share_foretold_what_it_leaves(
     metric_map = learn(cells, walked, ridge=ridge)
     lag, straight = metric_map.lag, metric_map.straight
     evidence = metric_map._evidence(slice(0, 2))
-    positions, turns = evidence.solve(ridge)
+    positions, turns = evidence.solve(ridge * torch.eye(FEATURES).double())
     torch.testing.assert_close(turns.abs(), torch.ones(CELLS, dtype=torch.double))
     rows, wanted = [], []
     share, patches = _patches(cells, walked.odour)
@@ -206,6 +208,36 @@ def test_shuffled_order_teaches_nothing(cells: PlaceCells, walked: Walk) -> None
     assert_left_out(learn(cells, still), cells, walked.odour, "foretells")
 
 
+@pytest.fixture(scope="module")
+def noisy() -> Walk:
+    some = walk(800, 3)
+    noise = 0.06 * torch.randn(len(some.odour), 3, generator=torch.Generator().manual_seed(0))
+    return some._replace(odour=some.odour + noise)
+
+
+def test_of_few_views_with_noise_one_affine_map_for_all_is_learnt(cells: PlaceCells, noisy: Walk) -> None:
+    assert_left_out(learn(cells, noisy, stiffer=()), cells, noisy.odour, "foretells")
+    stiff = learn(cells, noisy)
+    assert not stiff.diagnosis()
+    position, _ = stiff(cells, noisy.odour)
+    assert r2_score(*procrustes(noisy.place, position)[:2]) > 0.95
+    order = torch.randperm(len(noisy.place), generator=torch.Generator().manual_seed(0))
+    lost = noisy._replace(place=noisy.place[order], odour=noisy.odour[order])
+    assert_left_out(learn(cells, lost), cells, lost.odour, "foretells")
+
+
+def test_affine_maps_are_what_the_stiffer_priors_leave(cells: PlaceCells) -> None:
+    rng = torch.Generator().manual_seed(0)
+    start, slope = torch.randn(1, generator=rng), torch.randn(3, generator=rng)
+    affine = (
+        torch.cat([start + cells.centres @ slope[:, None], slope.expand(CELLS, 3)], dim=1).flatten().double()
+    )
+    projection = _affine(cells)
+    torch.testing.assert_close(projection @ affine, affine, atol=1e-5, rtol=1e-5)
+    assert float(projection.trace()) == pytest.approx(4)
+    torch.testing.assert_close(projection @ projection, projection)
+
+
 @pytest.mark.parametrize(("turn", "said"), [(0.4, "too few"), (0.1, "foretells")])
 def test_spinning_on_the_spot_teaches_nothing(cells: PlaceCells, turn: float, said: str) -> None:
     noise = 0.02 * torch.randn(3000, 3, generator=torch.Generator().manual_seed(0))
@@ -237,6 +269,6 @@ def test_offsets_converge_behind_a_door_too() -> None:
         1.0,
         1.0,
     )
-    _, turns = evidence.solve(1e-9)
+    _, turns = evidence.solve(1e-9 * torch.eye(cells).double())
     across = (turns[10:].mean() / turns[:10].mean()).angle().item()
     assert across == pytest.approx(0.7, abs=0.01)
