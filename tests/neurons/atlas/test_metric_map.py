@@ -216,7 +216,7 @@ def noisy() -> Walk:
 
 
 def test_of_few_views_with_noise_one_affine_map_for_all_is_learnt(cells: PlaceCells, noisy: Walk) -> None:
-    assert_left_out(learn(cells, noisy, stiffer=()), cells, noisy.odour, "foretells")
+    assert_left_out(learn(cells, noisy, stiffness=0.0), cells, noisy.odour, "foretells")
     stiff = learn(cells, noisy)
     assert not stiff.diagnosis()
     position, _ = stiff(cells, noisy.odour)
@@ -226,7 +226,7 @@ def test_of_few_views_with_noise_one_affine_map_for_all_is_learnt(cells: PlaceCe
     assert_left_out(learn(cells, lost), cells, lost.odour, "foretells")
 
 
-def test_affine_maps_are_what_the_stiffer_priors_leave(cells: PlaceCells) -> None:
+def test_affine_maps_are_what_the_stiff_prior_leaves(cells: PlaceCells) -> None:
     rng = torch.Generator().manual_seed(0)
     start, slope = torch.randn(1, generator=rng), torch.randn(3, generator=rng)
     affine = (
