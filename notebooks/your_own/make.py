@@ -90,7 +90,9 @@ def write_spikes(
     fields = np.stack([along.ravel(), up.ravel()], axis=1) + rng.uniform(-0.05, 0.05, (16, 2))
     square = ((positions[:, None] - fields) ** 2).sum(axis=2)
     directions = np.deg2rad(60) * np.arange(6)
-    rates = {f"p{cell + 1}": 0.1 + 12 * np.exp(-apart / (2 * 0.12**2)) for cell, apart in enumerate(square.T)}
+    rates = {
+        f"p{cell + 1:02}": 0.1 + 15 * np.exp(-apart / (2 * 0.1**2)) for cell, apart in enumerate(square.T)
+    }
     rates |= {
         f"h{cell + 1}": 0.1 + 10 * np.exp(4 * (np.cos(wrap_angle(headings - direction)) - 1))
         for cell, direction in enumerate(directions)
