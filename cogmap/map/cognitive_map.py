@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 import warnings
 from collections.abc import Iterator, Mapping
@@ -386,7 +387,7 @@ class CognitiveMap:
                 from cogmap.map.topology import homology_of_charts  # noqa: PLC0415
 
                 homology = homology_of_charts(network.charts)
-            topology = topology_verdict(homology)
+            topology = topology_verdict(homology, turned=math.isfinite(self.phase_eigenvalue_))
         return Diagnosis(
             heading=Verdict(network.heading_diagnosis()),
             place=Verdict(network.place_diagnosis()),

@@ -10,6 +10,10 @@ class Counted(Protocol):
     """Betti numbers with what is not resolved of them, as `cogmap.Betti` has it."""
 
     @property
+    def numbers(self) -> tuple[int, ...]:
+        """Pieces, loops, voids."""
+
+    @property
     def reasons(self) -> tuple[str, ...]:
         """Why a number is not resolved, by dimension; empty where it is."""
 
@@ -53,12 +57,27 @@ class Diagnosis:
         return "\n".join(f"{name}: {told.reason or 'trusted'}" for name, told in verdicts.items())
 
 
-def topology_verdict(homology: Mapping[str, Counted]) -> Verdict:
-    """Trust the Betti numbers of clouds when all of them are resolved; else say which is not, and why."""
-    doubts = (
+def topology_verdict(homology: Mapping[str, Counted], *, turned: bool = True) -> Verdict:
+    """Trust the Betti numbers of clouds when all of them are resolved; else say which is not, and why.
+
+    Parameters
+    ----------
+    homology
+        Betti numbers by the names of the clouds.
+    turned
+        Whether a loop of headings has closed. A camera that turns all round leaves a loop; of too few views
+        none is counted, and nothing in the cloud tells: 400 over 4×3 m look like a ball without holes.
+    """
+    doubts = [
         f"H{dimension} of {name.replace('_', ' ')} is unresolved: {reason}"
         for name, found in homology.items()
         for dimension, reason in enumerate(found.reasons)
         if reason
-    )
+    ]
+    loopless = [name.replace("_", " ") for name, found in homology.items() if found.numbers[1:2] == (0,)]
+    if loopless and not turned:
+        doubts.append(
+            f"no loop is counted in what is {' nor in what is '.join(loopless)}, and none of headings "
+            "closes: the camera never turned all round, or these are too few views to show it; show it more"
+        )
     return Verdict("; ".join(doubts))

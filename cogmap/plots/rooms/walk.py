@@ -49,7 +49,7 @@ def plot_walk(
     for axes, title in zip((left, right), titles, strict=True):
         tidy_room(axes, title=title)
         draw_surfaces(axes, arena)
-        frame_room(axes, arena.bounds, 0.03 * extent)
+        frame_room(axes, arena.bounds, 0.06 * extent)
     clock = ScalarMappable(Normalize(times[0], times[-1]), colormaps["viridis"])
     ways = np.stack([poses[:-1, :2], poses[1:, :2]], axis=1)
     left.add_collection(

@@ -171,6 +171,11 @@ def test_diagnosis_of_a_map(cmap: CognitiveMap, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(topology, "betti", lambda _: betti_of((1, 1, 0), ("", "close", "")))
     assert cmap.diagnosis().topology == topology_verdict(topology.homology_of_charts(cmap._network.charts))
     assert "close" in cmap.diagnosis().topology.reason
+    loopless = {"seen": betti_of((1, 0, 0))}
+    assert cmap.diagnosis(loopless).topology.trusted
+    misled = copy.deepcopy(cmap)
+    misled._network.agreement[1] = torch.nan  # no loop closes
+    assert "never turned all round, or these are too few views" in misled.diagnosis(loopless).topology.reason
     misled = copy.deepcopy(cmap)
     misled._network.ambiguity = torch.tensor([0.1, 0.0])
     told = misled.diagnosis({})

@@ -16,6 +16,15 @@ def test_topology_is_trusted_where_all_numbers_are_resolved() -> None:
     )
 
 
+def test_without_any_loop_it_is_trusted_only_where_headings_close() -> None:
+    ball, ring = betti_of((1, 0, 0)), betti_of((1, 1, 0))
+    assert topology_verdict({"seen": ball}).trusted
+    assert topology_verdict({"seen": ring}, turned=False).trusted
+    assert "no loop is counted in what is seen and smelt, and none of headings closes" in (
+        topology_verdict({"seen": ring, "seen_and_smelt": ball}, turned=False).reason
+    )
+
+
 def test_it_reads_as_four_lines() -> None:
     told = Diagnosis(Verdict(), Verdict("two places smell alike"), Verdict(), Verdict())
     assert str(told).splitlines() == [
