@@ -1,6 +1,8 @@
 """The metric map of places, and the compass's offset at each, learnt from the order of views alone."""
 
-from typing import NamedTuple
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple, TypeAlias
 
 import torch
 from jaxtyping import Bool, Complex, Float
@@ -42,7 +44,8 @@ class MetricMap(nn.Module):
     double precision, as S⁻¹ makes much of little.
 
     Of few views with noisy smells each half would follow its own noise. Then the maps of all places are drawn
-    towards one for all of them, which is affine in o: x_p = x_0 + B c_p, B_p = B.
+    towards one for all of them, which is affine in o, x_p = x_0 + B c_p and B_p = B, for a compass that is
+    taken to be right, f = 1.
 
     Parameters
     ----------
@@ -55,8 +58,7 @@ class MetricMap(nn.Module):
     ridge
         Prior on the map, as a fraction of the mean square of a feature's displacement.
     stiffness
-        Prior on what is not one affine map, where `ridge` alone does not suffice. Less would save maps that
-        bend where noise is not what is amiss: with all odours in a corner, headings are off by 6° then.
+        Prior on what is not one affine map, where `ridge` alone does not suffice.
     least_r2
         Least share of the displacements of one half of a walk that the other half foretells, in a map worth
         having: .88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each
@@ -132,15 +134,19 @@ class MetricMap(nn.Module):
         if min(half.pairs for half in halves) < len(self.offsets):
             return
         whole = torch.eye(len(self.positions)).to(self.spread)
-        prior = self.ridge * whole
-        foretold = _foretold(halves, prior)
+        learnt = partial(_Evidence.solve, prior=self.ridge * whole)
+        foretold = _foretold(halves, learnt)
         if min(foretold) < self.least_r2:
-            stiff = prior + self.stiffness * (whole - _affine(place))
-            tried = ((foretold, prior), (_foretold(halves, stiff), stiff))
-            foretold, prior = max(tried, key=lambda found: min(found[0]))
+            # a map that cannot bend would bend the compass in its place, which therefore stays as it is
+            stiff = partial(
+                _Evidence.without_offsets,
+                prior=self.ridge * whole + self.stiffness * (whole - _affine(place)),
+            )
+            tried = ((foretold, learnt), (_foretold(halves, stiff), stiff))
+            foretold, learnt = max(tried, key=lambda found: min(found[0]))
         self.cross_validated_r2 = self.cross_validated_r2.new_tensor(foretold)
         if not self.diagnosis():
-            positions, turns = self._evidence(slice(0, 2)).solve(prior)
+            positions, turns = learnt(self._evidence(slice(0, 2)))
             self.positions = torch.view_as_real(positions).float()
             self.offsets = wrap_angle(self.offsets + turns.angle().float())
 
@@ -189,6 +195,10 @@ class MetricMap(nn.Module):
         )
 
 
+_Learnt: TypeAlias = tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]
+"""β and f."""
+
+
 class _Evidence(NamedTuple):
     """Sums over displacements: S, D, Σ |u|² w wᵀ, Σ |u|², and how many."""
 
@@ -198,16 +208,9 @@ class _Evidence(NamedTuple):
     power: float
     pairs: float
 
-    def solve(
-        self, prior: Float[Tensor, "features features"]
-    ) -> tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]:
+    def solve(self, prior: Float[Tensor, "features features"]) -> _Learnt:
         """Give β and f; the prior is relative to the mean square of a feature, as sums grow with the walk."""
-        # cells that the walk never came by leave S singular
-        prior = self.spread.diagonal().mean() * prior
-        # S is real: two real right-hand sides cost half of a complex system
-        parts = torch.view_as_real(self.ahead.mH.resolve_conj())
-        solved = torch.linalg.solve(self.spread + prior, parts.flatten(1)).reshape(parts.shape)
-        placing = torch.view_as_complex(solved.contiguous())
+        placing = self._placing(prior)
         turns = torch.ones_like(self.ahead[:, 0])
         agreement = self.ahead @ placing
         # fifty will do in a room; two that a door joins turn against each other for thousands
@@ -217,6 +220,20 @@ class _Evidence(NamedTuple):
             if (turns - before).abs().max() < CONVERGED:
                 break
         return placing @ turns, turns
+
+    def without_offsets(self, prior: Float[Tensor, "features features"]) -> _Learnt:
+        """Give β for a compass that is right everywhere, f = 1."""
+        turns = torch.ones_like(self.ahead[:, 0])
+        return self._placing(prior) @ turns, turns
+
+    def _placing(self, prior: Float[Tensor, "features features"]) -> Complex[Tensor, "features cells"]:
+        """Give S⁻¹ Dᴴ."""
+        # cells that the walk never came by leave S singular
+        prior = self.spread.diagonal().mean() * prior
+        # S is real: two real right-hand sides cost half of a complex system
+        parts = torch.view_as_real(self.ahead.mH.resolve_conj())
+        solved = torch.linalg.solve(self.spread + prior, parts.flatten(1)).reshape(parts.shape)
+        return torch.view_as_complex(solved.contiguous())
 
     def cross_validated_r2(
         self, positions: Complex[Tensor, "features"], turns: Complex[Tensor, "cells"]
@@ -229,10 +246,10 @@ class _Evidence(NamedTuple):
         return 1 - float(moved + looked - 2 * both) / self.power
 
 
-def _foretold(halves: list[_Evidence], prior: Float[Tensor, "features features"]) -> tuple[float, float]:
+def _foretold(halves: list[_Evidence], learn: Callable[[_Evidence], _Learnt]) -> tuple[float, float]:
     """Share of the displacements of either half that the map of the other foretells."""
     one, other = halves
-    return one.cross_validated_r2(*other.solve(prior)), other.cross_validated_r2(*one.solve(prior))
+    return one.cross_validated_r2(*learn(other)), other.cross_validated_r2(*learn(one))
 
 
 def _affine(place: PlaceCells) -> Float[Tensor, "features features"]:

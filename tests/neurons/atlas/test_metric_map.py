@@ -219,7 +219,8 @@ def test_of_few_views_with_noise_one_affine_map_for_all_is_learnt(cells: PlaceCe
     assert_left_out(learn(cells, noisy, stiffness=0.0), cells, noisy.odour, "foretells")
     stiff = learn(cells, noisy)
     assert not stiff.diagnosis()
-    position, _ = stiff(cells, noisy.odour)
+    position, offset = stiff(cells, noisy.odour)
+    assert not offset.any()
     assert r2_score(*procrustes(noisy.place.numpy(), position.numpy())[:2]) > 0.95
     order = torch.randperm(len(noisy.place), generator=torch.Generator().manual_seed(0))
     lost = noisy._replace(place=noisy.place[order], odour=noisy.odour[order])
