@@ -22,9 +22,10 @@ def test_a_network_reads_headings_off_a_ring() -> None:
 
 
 def test_it_finds_nothing_where_there_is_nothing() -> None:
-    fit = predict_headings(RNG.normal(size=(2000, 3)), HEADINGS, 0)
-    assert abs(correlation(fit[fit["split"] == "test"])) < 0.95
-    assert fit["error_rad"].abs().median() > 1
+    fit = predict_headings(RNG.normal(size=(600, 3)), HEADINGS[:600], 0)
+    test = fit[fit["split"] == "test"]
+    assert abs(correlation(test)) < 0.95
+    assert test["error_rad"].abs().median() > 1
 
 
 def test_the_same_seed_trains_the_same_network() -> None:
