@@ -67,7 +67,7 @@ class VisualSmell(TransformerMixin, BaseEstimator):
             )
         with one_thread():
             self._axes = turn_invariant_axes(seen, components)
-        found = self._axes.transform(seen)
+            found = self._axes.transform(seen)
         self.scale_ = np.sqrt(found.var(axis=0).sum())
         return np.asarray(np.exp(found / self.scale_))
 
