@@ -60,7 +60,7 @@ def test_a_full_device_is_told_in_one_sentence() -> None:
 @pytest.mark.parametrize(
     ("error", "said"),
     [
-        (OSError(errno.EACCES, "Permission denied", "/root/map"), "cannot use /root/map: Permission denied"),
+        (OSError(errno.EACCES, "Permission denied", "/srv/map"), "cannot use /srv/map: Permission denied"),
         (OSError(errno.ENOSPC, "No space left"), "cannot write what is printed: No space left"),
         (OSError("odd"), "the system refuses: odd"),
     ],
