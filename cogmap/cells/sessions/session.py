@@ -14,7 +14,7 @@ from cogmap.atomic import user_path
 from cogmap.cells.sessions.nwb_file import is_nwb, read_nwb
 from cogmap.cells.sessions.recorded import Recorded, Track
 from cogmap.cells.sessions.samples import count_spikes, sample_durations, speeds, within
-from cogmap.cells.sessions.tables import SPIKES, TRACK
+from cogmap.cells.sessions.tables import SPIKES, TRACK, read_track_file
 from cogmap.cells.sessions.tracks import as_track
 from cogmap.cells.sessions.trains import as_trains
 from cogmap.cells.sessions.units import check_metres, in_radians, metres_per, positive, scaled
@@ -97,8 +97,8 @@ def session(
         a pynapple `TsGroup`, a neo `Segment`, `Block` or list of `SpikeTrain`, spike times in s by cell in a
         mapping or a list.
     track
-        Where the animal was, as `cogmap.cells.sessions.tracks.as_track` takes it: a file, a table, times and
-        positions (and headings) in a tuple, series of pynapple or neo, a recording.
+        Where the animal was: the path of a file, or as `cogmap.cells.sessions.tracks.as_track` takes it, a
+        table, times and positions (and headings) in a tuple, series of pynapple or neo, a recording.
     position, heading
         Names of the series in an NWB file, where there are several; `heading` is also the name of a column
         of a track's file.
@@ -135,7 +135,7 @@ def session(
     units: dict[str, Any] = {"unit": unit, "metres_per_unit": metres_per_unit, "heading_unit": heading_unit}
     chosen = {"position": position, "heading": heading, "activity": activity}
     if is_nwb(source):
-        where = None if track is None else as_track(track, **units, **reading)
+        where = None if track is None else _track(track, units, reading)
         if where is None and reading:
             raise CogmapError(f"unknown option {next(iter(reading))!r}")
         recorded = read_nwb(source, track=where, heading_unit=heading_unit, **chosen)
@@ -144,7 +144,7 @@ def session(
         if wrong:
             raise CogmapError(f"{wrong[0]} chooses a series of an NWB file; leave it out")
         trains, kinds = as_trains(source)
-        where = as_track(track, **units, **reading)
+        where = _track(track, units, reading)
         recorded = Recorded(where, list(trains), kinds, list(trains.values()))
     if in_file:
         # A file is read as metres and radians by its units.
@@ -153,6 +153,17 @@ def session(
     else:
         placed = _placed(recorded.track, unit, metres_per_unit, heading_unit)
     return sampled(replace(recorded, track=placed), slowest=slowest, between=between)
+
+
+def _track(track: Any, units: Mapping[str, Any], reading: Mapping[str, Any]) -> Track:
+    """Read a track, of a file in metres and radians by its units."""
+    if isinstance(track, str | Path):
+        return read_track_file(user_path(track), **units, **reading)
+    if track is not None and reading:
+        raise CogmapError(
+            f"the option {next(iter(reading))} is for a track's file, and it is none; leave it out"
+        )
+    return as_track(track, heading_unit=units["heading_unit"])
 
 
 def _placed(track: Track, unit: str | None, metres_per_unit: object, heading_unit: str | None) -> Track:

@@ -1,20 +1,17 @@
-"""Tracks, however they are kept: files, tables, arrays, a recording, series of pynapple or neo."""
+"""Tracks in memory, however they are kept: tables, arrays, a recording, series of pynapple or neo."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from cogmap.atomic import user_path
 from cogmap.cells.sessions.neo_objects import is_neo_signal, neo_series
 from cogmap.cells.sessions.pynapple_objects import is_pynapple, pynapple_series
 from cogmap.cells.sessions.recorded import Series, Track, track_of
 from cogmap.cells.sessions.samples import headings_at
-from cogmap.cells.sessions.tables import read_track_file
 from cogmap.cells.sessions.units import in_radians
 from cogmap.errors import CogmapError
 
@@ -24,49 +21,25 @@ ASKED = (
 )
 
 
-def as_track(
-    track: Any,
-    *,
-    unit: str | None = None,
-    metres_per_unit: object = None,
-    heading_unit: str | None = None,
-    **reading: Any,
-) -> Track:
+def as_track(track: Any, *, heading_unit: str | None = None) -> Track:
     """Give times, positions and headings of an animal.
 
     Parameters
     ----------
     track
-        The path of a file; a table with `t` (s), `x`, `y` and, optionally, `heading` or `heading_deg`; times
-        (s), positions (samples, 2) and, optionally, headings in a tuple; a series of positions of pynapple or
-        neo, or a tuple of one and a series of headings, at times of their own; whatever has `times` and
+        A table with `t` (s), `x`, `y` and, optionally, `heading` or `heading_deg`; times (s), positions
+        (samples, 2) and, optionally, headings in a tuple; a series of positions of pynapple or neo, or a tuple of one and a series of headings, at times of their own; whatever has `times` and
         `positions` or `poses`, as a recording, a session or what `arena.read_track` gives.
-    unit, metres_per_unit
-        Of positions in a file, which are read as metres. Others keep their unit.
     heading_unit
-        "rad" or "deg", of series and files.
-    reading
-        Options for a file, as `arena.read_track` takes them.
+        "rad" or "deg", of series.
 
     Raises
     ------
-    CogmapError, ArenaError
+    CogmapError
         For anything else.
     """
-    if isinstance(track, str | Path):
-        return read_track_file(
-            user_path(track),
-            unit=unit,
-            metres_per_unit=metres_per_unit,
-            heading_unit=heading_unit,
-            **reading,
-        )
     if track is None:
         raise CogmapError(f"the session has no track, so nobody knows where the spikes were; {ASKED}")
-    if reading:
-        raise CogmapError(
-            f"the option {next(iter(reading))} is for a track's file, and it is none; leave it out"
-        )
     if isinstance(track, pd.DataFrame):
         return _table(track)
     found = _of_attributes(track)
