@@ -28,8 +28,9 @@ def as_track(track: Any, *, heading_unit: str | None = None) -> Track:
     ----------
     track
         A table with `t` (s), `x`, `y` and, optionally, `heading` or `heading_deg`; times (s), positions
-        (samples, 2) and, optionally, headings in a tuple; a series of positions of pynapple or neo, or a tuple of one and a series of headings, at times of their own; whatever has `times` and
-        `positions` or `poses`, as a recording, a session or what `arena.read_track` gives.
+        (samples, 2) and, optionally, headings in a tuple; a series of positions of pynapple or neo, or a
+        tuple of one and a series of headings, at times of their own; whatever has `times` and `positions` or
+        `poses`, as a recording, a session or what `arena.read_track` gives.
     heading_unit
         "rad" or "deg", of series.
 
