@@ -3,7 +3,7 @@
 from math import isnan
 
 import torch
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from torch import Tensor, nn
 
 from neurons.atlas.atlas import Atlas
@@ -36,6 +36,9 @@ class Circuit(nn.Module):
         κ, how much smell counts beside sight where charts compete (`neurons.layers.charts.Charts`).
     tangents
         Of each chart, to begin with; how many lie along the manifold is learnt.
+    code
+        That has learnt elsewhere already (`neurons.layers.sanger.Sanger.grown`), in place of `components` new
+        ones.
     guard
         Bounds of what is trusted; the usual ones unless told.
     """
@@ -53,12 +56,14 @@ class Circuit(nn.Module):
         generator: torch.Generator,
         smell: float = 0.5,
         tangents: int = FIRST_TANGENTS,
+        code: Sanger | None = None,
         guard: Guard | None = None,
     ) -> None:
         super().__init__()
         self.most_charts = most_charts
         self.guard = guard or Guard()
-        self.code = Sanger(features, components, generator=generator)
+        self.code = code or Sanger(features, components, generator=generator)
+        components = len(self.code)
         self.charts = Charts(
             charts, components, odorants, generator=generator, smell=smell, tangents=tangents
         )
@@ -84,6 +89,21 @@ class Circuit(nn.Module):
         excited = self.readout.excite(self.charts, codes, log_odours)
         recalled: Recalled = self.readout(self.charts, codes, excited)
         return recalled
+
+    def cut_code(self) -> None:
+        """Leave a code that has grown the components that it needs; what stands on it is as before any view."""
+        self.code.cut()
+        charts = self.charts
+        self.charts = Charts(
+            len(charts),
+            len(self.code),
+            charts.smells.shape[1],
+            # of its own: a map that was saved and loaded has none to go on with
+            generator=torch.Generator().manual_seed(0),
+            smell=charts.smell,
+            tangents=charts.dimensions,
+        )
+        self._stand_on_charts()
 
     @property
     def dimension(self) -> tuple[int, float]:
@@ -115,21 +135,31 @@ class Circuit(nn.Module):
 
     def add_charts(self) -> None:
         """Double the charts where they lie farthest apart; what stands on them is as before any view."""
-        count, cells = len(self.charts), len(self.place.centres)
-        self.charts.grow(Atlas.of(self.charts.points).edges, min(count, self.most_charts - count))
-        self._stand_on_charts()
         count = len(self.charts)
-        # place cells that have learnt before there were charts keep what they prefer
-        self.place.branches = torch.ones(count, cells, dtype=torch.bool)
-        self.place.afferents = Afferents(count, cells)
-        # preferred directions stay as drawn: a map that was saved and loaded has no generator to go on with
-        self.heading.afferents = Afferents(count, len(self.heading.preferred))
+        self.charts.grow(Atlas.of(self.charts.points).edges, min(count, self.most_charts - count))
+        self._blank_cells()
         self.agreement.fill_(torch.nan)
         self.connected.zero_()
         self.ambiguity.fill_(torch.nan)
         self.spectrum.fill_(torch.nan)
         self.votes.fill_(torch.nan)
         self.felt.fill_(torch.nan)
+
+    def keep_charts(self, kept: Int[Tensor, "kept"]) -> None:
+        """Keep these charts alone; what stands on them is as before any view."""
+        self.charts.keep(kept)
+        self._blank_cells()
+        self.readout.spacing = Atlas.of(self.charts.points).spacing
+
+    def _blank_cells(self) -> None:
+        """Let cells hear nothing yet of charts that are others than before."""
+        self._stand_on_charts()
+        count, cells = len(self.charts), len(self.place.centres)
+        # place cells that have learnt before there were charts keep what they prefer
+        self.place.branches = torch.ones(count, cells, dtype=torch.bool)
+        self.place.afferents = Afferents(count, cells)
+        # preferred directions stay as drawn: a map that was saved and loaded has no generator to go on with
+        self.heading.afferents = Afferents(count, len(self.heading.preferred))
         self.to(self.agreement.device)  # where the layers are that these replace
 
     def _stand_on_charts(self) -> None:

@@ -9,7 +9,7 @@ from torch import Tensor, nn
 
 from neurons.circuit import Circuit
 from neurons.guard import Agreement
-from neurons.stages import STAGES, Batch, Stage
+from neurons.stages import STAGES, Batch, ChartStage, Stage
 
 
 class Network(Circuit):
@@ -60,6 +60,11 @@ class Network(Circuit):
     def entered(self) -> Stage[Any]:
         """The stage before which everything is fixed: `stage`, or the one that ends with the next view."""
         return self.stages[int(self.stage_index)]
+
+    @property
+    def charted(self) -> bool:
+        """Whether its charts have tiled the views."""
+        return int(self.stage_index) > self._index(ChartStage.name)
 
     @property
     def epochs(self) -> int:

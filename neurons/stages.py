@@ -161,6 +161,11 @@ class CodeStage(StripStage):
         """Take a step of Sanger's rule."""
         circuit.code.partial_fit(batch.seen)
 
+    def finish(self, circuit: Circuit) -> None:
+        """Leave a code that has grown as many components as it needs to tell views as well as it did before."""
+        if int(circuit.code.fixed):
+            circuit.cut_code()
+
 
 @dataclass(frozen=True)
 class ChartStage(CodedStage):

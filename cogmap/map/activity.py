@@ -30,6 +30,11 @@ class Activity:
     novelty
         There too, how far the views are from those that the map was refined by, over what is usual among
         these: about 1 where places are known, many in another room.
+    room
+        In which of the map's rooms the views are, by number in the order in which they were learnt, int64; −1
+        where in none of them. What else is said is then what the most similar room says.
+    room_confidence
+        From 0 to 1: how much less every other room is like the views. 1 in a map of one.
     """
 
     place: Float[np.ndarray, "views place_cells"]
@@ -39,6 +44,8 @@ class Activity:
     position: Float[np.ndarray, "views 2"]
     plain: Activity | None = None
     novelty: Float[np.ndarray, "views"] | None = None
+    room: Int[np.ndarray, "views"] | None = None
+    room_confidence: Float[np.ndarray, "views"] | None = None
 
     def __len__(self) -> int:
         return len(self.phase)

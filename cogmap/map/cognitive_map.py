@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from copy import copy
+from copy import copy, deepcopy
 from dataclasses import KW_ONLY, dataclass, fields, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,6 @@ import numpy as np
 import torch
 from jaxtyping import Float
 from torch import Tensor
-from tqdm import tqdm
 
 from cogmap.errors import CogmapError, UntrustedMapWarning
 from cogmap.inputs import (
@@ -29,18 +28,19 @@ from cogmap.inputs import (
     log_odours,
 )
 from cogmap.map.activity import Activity
+from cogmap.map.development import Development
 from cogmap.map.device import checked_device
-from cogmap.map.diagnosis import Counted, Diagnosis, Verdict, topology_verdict
+from cogmap.map.diagnosis import Counted, Diagnosis, Verdict, combined, topology_verdict
 from cogmap.map.eyes import RETINAS, found_eye
+from cogmap.map.perception import joined, recognised, seen, smelt
 from cogmap.map.storage import read_state, write_state
 from cogmap.threads import in_order, one_thread
-from neurons.angles import mean_angle
 from neurons.errors import NeuronsError
-from neurons.layers.readout import Recalled
 from neurons.layers.retina import Retina
-from neurons.merging import forked, merge
+from neurons.layers.sanger import Sanger
 from neurons.network import Network
-from neurons.stages import SIGHT_ALONE, SMELL_FIRST, STAGES, StripStage, chosen, joined
+from neurons.rooms import Rooms
+from neurons.stages import SIGHT_ALONE, SMELL_FIRST, STAGES
 
 if TYPE_CHECKING:
     from cogmap.map.relaxed_places import RelaxedPlaces
@@ -135,10 +135,10 @@ class CognitiveMap:
         told = ((field.name, getattr(self, field.name), field.default) for field in fields(self))
         unusual = (f"{name}={value!r}" for name, value, usual in told if value != usual)
         blank = f"CognitiveMap({', '.join(unusual)})"
-        if not hasattr(self, "_network"):
+        if not hasattr(self, "_rooms"):
             return blank
         height, width, _ = self.view_shape_
-        verdict = self._network.unfinished or self.reason_
+        verdict = self._rooms[0].unfinished or self.reason_
         return (
             f"<{blank} that has learnt from views of {height}×{width} pixels and {self.odorants_} odorants: "
             f"{verdict or 'trusted'}>"
@@ -160,14 +160,16 @@ class CognitiveMap:
         known = self.get_params()
         for name in params:
             check_choice("parameter", name, tuple(known))
-        if params and hasattr(self, "_network"):
+        if params and hasattr(self, "_rooms"):
             raise CogmapError("this map has learnt with other parameters; change those of a blank one")
         for name, value in params.items():
             setattr(self, name, value)
         return self
 
-    def fit(self, views: Any, odours: AnyArray | None = None, *, progress: bool = False) -> CognitiveMap:
-        """Learn a map from scratch, as epochs of `partial_fit` over the views.
+    def fit(
+        self, views: Any, odours: AnyArray | None = None, *, further: bool = False, progress: bool = False
+    ) -> CognitiveMap:
+        """Learn a map from scratch, as epochs of `partial_fit` over the views; or a further room beside others.
 
         Their order is random in every epoch but those of stages that learn from it, as the metric map does.
 
@@ -178,43 +180,47 @@ class CognitiveMap:
             slices are arrays.
         odours
             (views, odorants) concentrations > 0; None for sight alone.
+        further
+            Whether to keep what was learnt, and learn a further room beside it. Which views are of rooms that
+            are known is found out: these are learnt there, as by `partial_fit`.
         progress
             Whether to show a bar on stderr.
+
+        Raises
+        ------
+        CogmapError
+            For fewer views than charts; where rooms are known, for fewer views of no known room.
         """
-        views = checked_views(views)
-        logs = self._smelt(odours, views.shape[0], None)
-        if views.shape[0] < checked_count("charts", self.charts):
-            raise CogmapError(
-                f"there are {views.shape[0]} views for {self.charts} charts; "
-                "record more views or use fewer charts: about a fifth as many as views"
-            )
-        self._begin(tuple(views.shape[1:]), logs.shape[1], found_eye(self.eye, views), epoch=views.shape[0])
-        network, count, smells = self._network, views.shape[0], self._here(logs)
-        order = np.random.default_rng(self.seed)
-        with one_thread(self._device), tqdm(total=network.epochs, unit="epoch", disable=not progress) as bar:
-            started = time.perf_counter()
-            strips = smells.new_empty(count, self._retina.features)
-            for rows, strip in self._strips(views):
-                strips[rows] = strip
-            self.seconds_["retina"] = time.perf_counter() - started
-            see, seen = StripStage.see, strips
-            while int(network.views_seen) < network.epochs * count:
-                started = time.perf_counter()
-                network.advance_stage()
-                stage = network.stage
-                bar.set_description(stage.name)
-                # what a stage sees is made by layers that are fixed: once for all its epochs
-                if type(stage).see is not see:
-                    see = type(stage).see
-                    seen = joined([network.see(batch) for batch in strips.split(BATCH)])
-                if stage.in_order:
-                    network.break_sequence()  # each epoch begins the walk anew
-                epoch = np.arange(count) if stage.in_order else order.permutation(count)
-                for rows in self._here(epoch).split(BATCH):
-                    network.learn_seen(chosen(seen, rows), smells[rows])
-                self.seconds_[stage.name] = self.seconds_.get(stage.name, 0.0) + time.perf_counter() - started
-                bar.n = int(network.views_seen) // count
-                bar.refresh()
+        known = further and hasattr(self, "_rooms")
+        views = checked_views(views, self.view_shape_ if known else None)
+        logs = self._smelt(odours, views.shape[0], self.odorants_ if known else None)
+        if not known:
+            self._check_enough(views.shape[0])
+            self._begin(tuple(views.shape[1:]), logs.shape[1], found_eye(self.eye, views))
+        rooms, smells = self._rooms, self._here(logs)
+        growing = Development(self.seconds_, batch=BATCH, seed=self.seed, progress=progress)
+        with one_thread(self._device):
+            with growing.timed("retina"):
+                strips = smells.new_empty(views.shape[0], self._retina.features)
+                for rows, strip in self._strips(views):
+                    strips[rows] = strip
+            if known:
+                batches = torch.arange(len(strips), device=strips.device).split(BATCH)
+                new = [rooms.are_new(strips[rows], smells[rows]) for rows in batches]
+                fresh = [rows for rows, novel in zip(batches, new, strict=True) if novel]
+                if fresh:
+                    self._check_enough(sum(map(len, fresh)))
+                jump = True
+                for rows, novel in zip(batches, new, strict=True):
+                    if not novel:
+                        rooms.learn(strips[rows], smells[rows], jump=jump)
+                    jump = novel
+                if not fresh:
+                    return self
+                rooms.add()
+                strips, smells = (each[torch.cat(fresh)] for each in (strips, smells))
+            rooms.networks[-1], *others = growing.of(rooms[len(rooms) - 1], strips, smells)
+            rooms.networks.extend(others)
         return self
 
     def partial_fit(self, views: Any, odours: AnyArray | None = None, *, jump: bool = False) -> CognitiveMap:
@@ -231,18 +237,16 @@ class CognitiveMap:
         jump
             Whether these views do not follow the last ones, as where another walk begins.
         """
-        fresh = not hasattr(self, "_network")
+        fresh = not hasattr(self, "_rooms")
         views = checked_views(views, None if fresh else self.view_shape_)
         logs = self._smelt(odours, views.shape[0], None if fresh else self.odorants_)
         if fresh:
-            epoch = checked_count("epoch", self.epoch)
-            self._begin(tuple(views.shape[1:]), logs.shape[1], found_eye(self.eye, views), epoch=epoch)
-        if jump:
-            self._network.break_sequence()
+            self._begin(tuple(views.shape[1:]), logs.shape[1], found_eye(self.eye, views))
         with one_thread(self._device):
             smells = self._here(logs)
             for rows, strip in self._strips(views):
-                self._network.learn(strip, smells[rows])
+                self._rooms.learn(strip, smells[rows], jump=jump)
+                jump = False
         return self
 
     def fork(self) -> CognitiveMap:
@@ -257,11 +261,11 @@ class CognitiveMap:
         CogmapError
             In a stage in which units compete for views, so that learning depends on their order.
         """
-        network = self._grown
+        rooms = self._learnt
         other: CognitiveMap = copy(self)
         other.seconds_ = {}
         with one_thread(self._device), _at_the_edge():
-            other._network = forked(network)
+            other._rooms = rooms.forked()
         return other
 
     def merge(self, other: CognitiveMap) -> CognitiveMap:
@@ -288,7 +292,7 @@ class CognitiveMap:
         >>> cmap.merge(away)  # as if it had seen both
         """
         with one_thread(self._device), _at_the_edge():
-            merge(self._grown, other._grown)
+            self._learnt.merge(other._learnt)
         return self
 
     def perceive(self, views: Any = None, *, odours: AnyArray | None = None) -> Activity:
@@ -301,12 +305,13 @@ class CognitiveMap:
         CogmapError
             When the map is not grown yet, when given neither, or more of one than of the other.
         """
-        network = self._grown
+        rooms = self._learnt
         if views is None:
             if odours is None:
                 raise CogmapError("give views, odours for a look in the dark, or both")
             self._check_nose()
-            return self._sniff(log_odours(odours, odorants=self.odorants_))
+            with one_thread(self._device):
+                return smelt(rooms, self._here(log_odours(odours, odorants=self.odorants_)))
         views = checked_views(views, self.view_shape_)
         logs = None
         if odours is not None:
@@ -317,16 +322,14 @@ class CognitiveMap:
                 warnings.warn(
                     f"this map is not to be trusted: {self.reason_}", UntrustedMapWarning, stacklevel=2
                 )
-            if not self.odorants_:
-                return self._unsensed(views.shape[0])
-            parts = [
-                self._look(network.recall(strip, None if logs is None else logs[rows]))
-                for rows, strip in self._strips(views)
-            ]
-        place, heading, phase, odour, position = (
-            torch.cat(part).cpu().numpy() for part in zip(*parts, strict=True)
-        )
-        plain = Activity(place, heading, phase, odour, position)
+            plain = joined(
+                [
+                    seen(rooms, strip, None if logs is None else logs[rows])
+                    if self.odorants_
+                    else recognised(rooms, strip)
+                    for rows, strip in self._strips(views)
+                ]
+            )
         if self.relaxed_places_ is None:
             return plain
         there = self.relaxed_places_.locate(views, plain.position)
@@ -365,10 +368,10 @@ class CognitiveMap:
 
     def encode(self, views: Any) -> Float[np.ndarray, "views components"]:
         """Give the principal components of views, the space of the view manifold, float32."""
-        network = self._grown
+        code = self._learnt.code
         views = checked_views(views, self.view_shape_)
         with one_thread(self._device):
-            return torch.cat([network.code(strip) for _, strip in self._strips(views)]).cpu().numpy()
+            return torch.cat([code(strip) for _, strip in self._strips(views)]).cpu().numpy()
 
     def diagnosis(self, homology: Mapping[str, Counted] | None = None) -> Diagnosis:
         """Say of heading, place, metric map and topology whether each is to be trusted, and why not.
@@ -379,6 +382,8 @@ class CognitiveMap:
             Betti numbers that topology is judged by, as of `cogmap.evaluation.homologies`; without, those of
             the charts are measured, as seen and as seen and smelt, which takes some seconds.
         """
+        if self.rooms_ > 1:
+            return combined({room: self.room(room).diagnosis() for room in range(self.rooms_)})
         network = self._grown
         topology = Verdict(network.unfinished or self._sees_alone)
         if topology.trusted:
@@ -403,12 +408,12 @@ class CognitiveMap:
     @property
     def reason_(self) -> str:
         """Why this map is not trusted; empty when it is."""
-        return self._grown.heading_diagnosis() or self._grown.place_diagnosis()
+        return self._of_rooms(lambda network: network.heading_diagnosis() or network.place_diagnosis())
 
     @property
     def metric_reason_(self) -> str:
         """Why this map tells no positions, whatever it tells of heading; empty when it does."""
-        return self._grown.metric_diagnosis()
+        return self._of_rooms(lambda network: network.metric_diagnosis())
 
     @property
     def phase_eigenvalue_(self) -> float:
@@ -430,9 +435,35 @@ class CognitiveMap:
         """Shares of what a chart sees along its tangents, before those are cut to `dimension_`; medians."""
         return self._grown.spectrum.cpu().numpy()
 
+    @property
+    def rooms_(self) -> int:
+        """How many rooms it knows, the one that it is learning included."""
+        return len(self._learnt)
+
+    def room(self, room: Whole) -> CognitiveMap:
+        """Give the map of one of its rooms, by number as in `Activity.room`; what it learns, both have learnt.
+
+        Raises
+        ------
+        CogmapError
+            When there is no such room.
+        """
+        rooms = self._learnt
+        if not 0 <= room < len(rooms):
+            raise CogmapError(f"room is {room}; this map knows {len(rooms)}, give 0 to {len(rooms) - 1}")
+        other = copy(self)
+        other._rooms = rooms.only(int(room))
+        return other
+
     def state_dict(self) -> dict[str, Tensor]:
-        """Give all that it has learnt, by the names it is saved under; as in PyTorch, not a copy."""
-        return self._grown.state_dict()
+        """Give all that it has learnt, by the names it is saved under; as in PyTorch, not a copy.
+
+        Those of the first room are named as in a map of one, those of others begin with `room_1.` and so on.
+        """
+        state, *others = (network.state_dict() for network in self._learnt)
+        for room, learnt in enumerate(others, start=1):
+            state |= {f"room_{room}.{name}": weight for name, weight in learnt.items()}
+        return {**state, "present": self._rooms.present, "strangeness": self._rooms.strangeness}
 
     def save(self, path: str | Path) -> None:
         """Write the map to a new folder: `weights.safetensors` and `map.json`.
@@ -442,18 +473,25 @@ class CognitiveMap:
         CogmapError
             When something is at the path already, or it cannot be written.
         """
-        network = self._grown
+        rooms = [
+            {
+                "epoch": network.epoch,
+                "components": len(network.code),
+                "charts": len(network.charts),
+                "most_charts": network.most_charts,
+                "tangents": network.charts.dimensions,
+            }
+            for network in self._learnt
+        ]
         learnt = {
             "view_shape": self.view_shape_,
             "odorants": self.odorants_,
             "eye": self.eye_,
-            "epoch": network.epoch,
-            "charts": len(network.charts),
-            "tangents": network.charts.dimensions,
+            "rooms": rooms,
         }
         settings = self.get_params()
         del settings["device"]
-        weights = network.state_dict()
+        weights = self.state_dict()
         if self.relaxed_places_ is not None:
             state = self.relaxed_places_.state()
             weights |= {RELAXED + name: torch.from_numpy(array) for name, array in state.items()}
@@ -471,20 +509,18 @@ class CognitiveMap:
         weights, settings, learnt = read_state(path)
         try:
             loaded = cls(**settings, device=device)
-            loaded._begin(
-                tuple(learnt["view_shape"]),
-                learnt["odorants"],
-                learnt["eye"],
-                epoch=learnt["epoch"],
-                charts=learnt["charts"],
-                tangents=learnt["tangents"],
-            )
+            loaded._begin(tuple(learnt["view_shape"]), learnt["odorants"], learnt["eye"])
+            loaded._rooms.restore(learnt["rooms"])
+            state = loaded.state_dict()
             relaxed = {
                 name.removeprefix(RELAXED): weights.pop(name).numpy()
                 for name in list(weights)
                 if name.startswith(RELAXED)
             }
-            loaded._network.load_state_dict(weights)
+            for name in state.keys() | weights.keys():
+                if weights[name].shape != state[name].shape:
+                    raise KeyError(name)
+                state[name].copy_(weights[name])
             if relaxed:
                 from cogmap.map.relaxed_places import RelaxedPlaces  # noqa: PLC0415
 
@@ -493,36 +529,41 @@ class CognitiveMap:
             raise CogmapError(f"{path} does not hold a whole map: {error}") from None
         return loaded
 
-    def _begin(
-        self, view_shape: tuple[int, ...], odorants: int, eye: str, *, epoch: int, **grown: int
-    ) -> None:
-        first = checked_count("charts", self.charts)
-        most = first if self.most_charts is None else checked_count("most_charts", self.most_charts, first)
-        checked_count("epoch", self.epoch)
-        if not isinstance(self.smell_first, bool | np.bool):
-            raise CogmapError(f"smell_first is {self.smell_first!r}; give True or False")
+    def _begin(self, view_shape: tuple[int, ...], odorants: int, eye: str) -> None:
         self._device = checked_device(self.device)
         self._retina = Retina(*view_shape[:2], **RETINAS[eye]).to(self._device)
         self.view_shape_, self.odorants_, self.eye_ = view_shape, odorants, eye
         self.seconds_: dict[str, float] = {}
         self.relaxed_places_ = None
         self.refine_reason_ = "it was shown no views to relax places by; call refine"
+        charts = checked_count("charts", self.charts)
+        most = self.most_charts
+        if not isinstance(self.smell_first, bool | np.bool):
+            raise CogmapError(f"smell_first is {self.smell_first!r}; give True or False")
         stages = SMELL_FIRST if self.smell_first else STAGES
-        with one_thread():  # even the initial weights, orthonormal by QR, depend on the number of threads
-            self._network = Network(
-                self._retina.features,
-                odorants,
-                most_charts=most,
-                components=checked_count("components", self.components, 4),
-                place_cells=checked_count("place_cells", self.place_cells),
-                heading_cells=checked_count("heading_cells", self.heading_cells),
-                smell=checked_number("smell", self.smell),
-                epoch=epoch,
-                stages=stages if odorants else SIGHT_ALONE,
-                # drawn on the processor: the same initial weights on every device
-                generator=torch.Generator().manual_seed(checked_count("seed", self.seed, 0)),
-                **{"charts": first} | grown,
-            ).to(self._device)
+        begin = partial(
+            _begun,
+            self._retina.features,
+            odorants,
+            charts=charts,
+            most_charts=charts if most is None else checked_count("most_charts", most, charts),
+            components=checked_count("components", self.components, 4),
+            place_cells=checked_count("place_cells", self.place_cells),
+            heading_cells=checked_count("heading_cells", self.heading_cells),
+            smell=checked_number("smell", self.smell),
+            epoch=checked_count("epoch", self.epoch),
+            stages=stages if odorants else SIGHT_ALONE,
+            seed=checked_count("seed", self.seed, 0),
+        )
+        with one_thread():
+            self._rooms = Rooms(begin).to(self._device)
+
+    def _check_enough(self, views: int) -> None:
+        if views < checked_count("charts", self.charts):
+            raise CogmapError(
+                f"there are {views} views for {self.charts} charts; "
+                "record more views or use fewer charts: about a fifth as many as views"
+            )
 
     @staticmethod
     def _smelt(
@@ -537,6 +578,14 @@ class CognitiveMap:
                 "give none, or begin another map with both"
             )
         return log_odours(odours, views=views, odorants=odorants)
+
+    def _of_rooms(self, diagnosis: Callable[[Network], str]) -> str:
+        """Say what a diagnosis has against rooms; of several each by its number, and not that still growing."""
+        rooms = self._learnt
+        if len(rooms) == 1:
+            return diagnosis(rooms[0])
+        told = {room: diagnosis(rooms[room]) for room in rooms.known}
+        return "; ".join(f"room {room}: {reason}" for room, reason in told.items() if reason)
 
     def _check_nose(self) -> None:
         if not self.odorants_:
@@ -553,11 +602,16 @@ class CognitiveMap:
         )
 
     @property
-    def _grown(self) -> Network:
-        """The network, or a refusal where nothing is learnt yet."""
-        if not hasattr(self, "_network"):
+    def _learnt(self) -> Rooms:
+        """The rooms, or a refusal where nothing is learnt yet."""
+        if not hasattr(self, "_rooms"):
             raise CogmapError("this map has learnt nothing yet; call fit or partial_fit first")
-        return self._network
+        return self._rooms
+
+    @property
+    def _grown(self) -> Network:
+        """The network of the first room, or a refusal."""
+        return self._learnt[0]
 
     def _here(self, array: np.ndarray) -> Tensor:
         """Take an array to where the map learns."""
@@ -574,36 +628,17 @@ class CognitiveMap:
         # read by one thread alone: whatever lazy views are made of need not bear several
         return in_order(lambda batch: (batch[0], self._retina(batch[1].to(self._device))), batches())
 
-    def _look(self, recalled: Recalled) -> tuple[Tensor, ...]:
-        """Rates of both populations, heading, recalled odour and position."""
-        network = self._network
-        position, offset = network.metric_map(network.place, recalled.odour)
-        angle = (recalled.heading + offset)[:, None]
-        phase = mean_angle(angle, torch.ones_like(angle))
-        place, heading = (cells.afferents(recalled.excited) for cells in (network.place, network.heading))
-        return place, heading, phase, recalled.odour, position
 
-    def _unsensed(self, count: int) -> Activity:
-        """Say of so many views what a map without a second sense can say: nothing."""
-        cells = self.place_cells + self.heading_cells
-        blind = np.full((count, cells + 3), np.nan, np.float32)
-        place, heading, phase, position = np.split(blind, [self.place_cells, cells, cells + 1], axis=1)
-        return Activity(place, heading, phase[:, 0], blind[:, :0], position)
-
-    def _sniff(self, log_odours: Float[np.ndarray, "views odorants"]) -> Activity:
-        """Place cells and position in the dark, where heading is not known."""
-        network = self._network
-        # float32, as everything that a map says of views
-        blind = np.full((len(log_odours), 1 + self.heading_cells), np.nan, np.float32)
-        with one_thread(self._device):
-            smells = self._here(log_odours)
-            return Activity(
-                place=network.place.tuning(smells).cpu().numpy(),
-                heading=blind[:, 1:],
-                phase=blind[:, 0],
-                odour=smells.cpu().numpy(),
-                position=network.metric_map(network.place, smells).position.cpu().numpy(),
-            )
+def _begun(
+    features: int, odorants: int, code: Sanger | None = None, *, seed: int, **sizes: Any
+) -> Network:
+    """Begin the network of a room, on a code that others have learnt, if any."""
+    # even the initial weights, orthonormal by QR, depend on the number of threads; and they are drawn on the
+    # processor: the same on every device
+    with one_thread():
+        generator = torch.Generator().manual_seed(seed)
+        grown = None if code is None else code.grown(sizes["components"], generator=generator)
+        return Network(features, odorants, code=grown, generator=generator, **sizes)
 
 
 @contextmanager

@@ -57,6 +57,16 @@ class Diagnosis:
         return "\n".join(f"{name}: {told.reason or 'trusted'}" for name, told in verdicts.items())
 
 
+def combined(found: Mapping[int, Diagnosis]) -> Diagnosis:
+    """Put the diagnoses of rooms together: each verdict is that all of them are to be trusted, or which not."""
+
+    def verdict(kind: str) -> Verdict:
+        told = {room: getattr(diagnosis, kind).reason for room, diagnosis in found.items()}
+        return Verdict("; ".join(f"room {room}: {reason}" for room, reason in told.items() if reason))
+
+    return Diagnosis(**{field.name: verdict(field.name) for field in fields(Diagnosis)})
+
+
 def topology_verdict(homology: Mapping[str, Counted], *, turned: bool = True) -> Verdict:
     """Trust the Betti numbers of clouds when all of them are resolved; else say which is not, and why.
 

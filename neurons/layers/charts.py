@@ -177,6 +177,12 @@ class Charts(nn.Module):
         self.variances = torch.cat([self.variances, self.variances.new_zeros(len(longest), self.dimensions)])
         self.initialised.fill_(len(self.centres))
 
+    def keep(self, kept: Int[Tensor, "kept"]) -> None:
+        """Keep these charts alone."""
+        for name in ("centres", "smells", "tangents", "responsibility", "variances"):
+            setattr(self, name, self.get_buffer(name)[kept])
+        self.initialised.fill_(len(kept))
+
     def widen(self) -> None:
         """Give each chart the tangents that it lacks of `TANGENTS`, at right angles to those that it has."""
         charts, components = self.centres.shape

@@ -9,7 +9,7 @@ from torch import Tensor, nn
 from neurons.angles import mean_angle
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.synchronisation import Compass
-from neurons.layers.charts import Charts, rows_of
+from neurons.layers.charts import Charts, NearestCharts, rows_of
 
 
 class ChartActivity(NamedTuple):
@@ -18,6 +18,10 @@ class ChartActivity(NamedTuple):
     chart: Int[Tensor, "views winners"]
     weight: Float[Tensor, "views winners"]
     """Sums to one over the winners."""
+
+    def of(self, views: Int[Tensor, "_"]) -> "ChartActivity":
+        """Take some of the views."""
+        return ChartActivity(self.chart[views], self.weight[views])
 
 
 class Recalled(NamedTuple):
@@ -102,7 +106,10 @@ class Readout(nn.Module):
         log_odours: Float[Tensor, "views odorants"] | None = None,
     ) -> ChartActivity:
         """Activity of the nearest charts, as seen or as seen and smelt."""
-        nearest = charts.excite(codes, self.winners, log_odours)
+        return self.activity(charts.excite(codes, self.winners, log_odours))
+
+    def activity(self, nearest: NearestCharts) -> ChartActivity:
+        """Activity of charts that have been found to be the nearest."""
         width = self.breadth * self.spacing[nearest.chart]
         # softmax takes the largest exponent away: a view far from all charts would else have weights 0 / 0
         weight = torch.softmax(-0.5 * nearest.squared_distance / width**2, dim=1)
