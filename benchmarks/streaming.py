@@ -67,10 +67,10 @@ def learn(views: int) -> Figures:
         cmap.partial_fit(Painted(poses[piece]), odours[piece], jump=True)
         spent.append((time.perf_counter() - begun) / len(poses[piece]))
         peaks.append(peak())
-        last += cmap._network.stage != STAGES[-1]  # noqa: SLF001
+        last += cmap._rooms[0].stage != STAGES[-1]  # noqa: SLF001
     tenth = len(spent) // 10
     return {
-        "views": int(cmap._network.views_seen),  # noqa: SLF001
+        "views": int(cmap._rooms[0].views_seen),  # noqa: SLF001
         "views_bytes": views * int(np.prod(Painted(np.zeros((1, 3))).shape)),
         "seconds": time.perf_counter() - started,
         "seconds_walking": walked,

@@ -91,7 +91,7 @@ class Circuit(nn.Module):
         return recalled
 
     def cut_code(self) -> None:
-        """Leave a code that has grown the components that it needs; what stands on it is as before any view."""
+        """Leave a code that has grown what it needs; what stands on it is as before any view."""
         self.code.cut()
         charts = self.charts
         self.charts = Charts(

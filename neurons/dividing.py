@@ -23,7 +23,7 @@ def divided(network: Network) -> list[Part]:
     """Part a network whose charts have just tiled their views by the pieces of its atlas; one if it is whole.
 
     Each part has the charts of its piece, and what stands on them is as before any view. Its epoch is as many
-    views as it will have of those that came in one: a share as large as that of the views that its charts won.
+    views as it will have of those that came in one: their share is that of the views that its charts won.
     """
     points = network.charts.points
     found = pieces(Atlas.of(points), points)

@@ -90,7 +90,7 @@ class Network(Circuit):
         """Let the layer whose period it is learn from a batch that `see` has made of strips."""
         stage = self.stage
         self.views_seen += len(log_odours)
-        progress = (int(self.views_seen) - self.begins(stage.name)) / (stage.epochs * self.epoch)
+        progress = (int(self.views_seen) - self.begins(stage.name)) / max(1, stage.epochs * self.epoch)
         stage.learn(self, Batch(seen, log_odours, min(1.0, progress), window=float(self.epoch)))
 
     def advance_stage(self) -> None:

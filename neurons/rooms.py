@@ -1,12 +1,12 @@
 """Rooms: pieces of one atlas, a network each, and which of them a view is of."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from copy import copy, deepcopy
+from copy import deepcopy
 from math import exp
 from typing import NamedTuple, cast
 
 import torch
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from torch import Tensor, nn
 
 from neurons.dividing import divided
@@ -34,8 +34,8 @@ class Recognised(NamedTuple):
     """From 0 to 1: how much less like the view every other room is."""
     nearest: Int[Tensor, "views"]
     """The room that is most like it, also where it is none of them."""
-    novelty: Float[Tensor, "views"]
-    """Misfit of the view to that room, over the usual one there."""
+    strange: Bool[Tensor, "views"]
+    """Whether it is less like that room than most views of it are."""
 
 
 class Rooms(nn.Module):
@@ -43,9 +43,9 @@ class Rooms(nn.Module):
 
     All see by one code. Where a room is new, the code grows by what its views have beside those known
     (`neurons.layers.sanger.Sanger.grown`), and a network on it begins: it learns charts, compass, cells and
-    metric map of its own, while whatever was learnt stays as it is. Both populations are shared: cell i is the
-    same cell everywhere, and has a field, or a preferred heading, in each room. Where rooms are learnt mixed,
-    their charts part when they have tiled the views (`neurons.dividing`).
+    metric map of its own, while whatever was learnt stays as it is. Both populations are shared: cell i is
+    the same cell everywhere, and has a field, or a preferred heading, in each room. Where rooms are learnt
+    mixed, their charts part when they have tiled the views (`neurons.dividing`).
 
     A view z is of the room with the chart that is most like it: with E = |x − mean|² what a view differs from
     the mean by, the square of what separates it from a chart of a room whose code has n components is
@@ -60,11 +60,14 @@ class Rooms(nn.Module):
     ----------
     begin
         Makes the network of a new room.
+    first
+        That of a room which is known already, in place of a new one.
     novel, novel_smell
-        From which novelty on a view, or a smell, is of no room that is known: fresh views of a known room have
-        .5 to 1.55 (1 and 99 % of 17,000), those of others 1.75 to 4.
+        From which novelty on a single view, or smell, is of no room that is known.
+    strange, strange_smell
+        Those that most views of a new room exceed, and few of a known one.
     majority
-        Share of novel views from which on a room is new.
+        Share of strange views from which on a room is new.
     window
         Views that the share is taken over.
     sharpness
@@ -75,17 +78,21 @@ class Rooms(nn.Module):
         self,
         begin: Begin,
         *,
-        novel: float = 1.65,
-        novel_smell: float = 2.5,
+        first: Network | None = None,
+        novel: float = 2.2,
+        novel_smell: float = 4.0,
+        strange: float = 1.65,
+        strange_smell: float = 2.5,
         majority: float = 2 / 3,
         window: float = 64.0,
         sharpness: float = 4.0,
     ) -> None:
         super().__init__()
         self.novel, self.novel_smell, self.majority = novel, novel_smell, majority
+        self.strange, self.strange_smell = strange, strange_smell
         self.window, self.sharpness = window, sharpness
         self._begin = begin
-        self.networks = nn.ModuleList([begin(None)])
+        self.networks = nn.ModuleList([begin(None) if first is None else first])
         self.present: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self.strangeness: Tensor = nn.Buffer(torch.zeros(()))
 
@@ -93,7 +100,7 @@ class Rooms(nn.Module):
         return len(self.networks)
 
     def __getitem__(self, room: int) -> Network:
-        return cast(Network, self.networks[room])
+        return cast("Network", self.networks[room])
 
     def __iter__(self) -> Iterator[Network]:
         return (self[room] for room in range(len(self)))
@@ -164,15 +171,16 @@ class Rooms(nn.Module):
 
     def _compare(self, misfits: list["_Misfit"]) -> Recognised:
         sight, smell = (torch.stack(part) for part in zip(*misfits, strict=True))
-        both = sight + smell / self.novel_smell**2
+        both = sight + smell / self.strange_smell**2
         best = both.argmin(dim=0, keepdim=True)
-        novel = ((sight > self.novel**2) | (smell > self.novel_smell**2)).gather(0, best)[0]
+        sight, smell = (misfit.gather(0, best)[0].sqrt() for misfit in (sight, smell))
+        novel = (sight > self.novel) | (smell > self.novel_smell)
         rooms = torch.tensor(self._asked, device=best.device)[best[0]]
         return Recognised(
             room=torch.where(novel, NOWHERE, rooms),
             confidence=torch.softmax(-self.sharpness / 2 * both, dim=0).amax(dim=0),
             nearest=rooms,
-            novelty=sight.gather(0, best)[0].sqrt(),
+            strange=(sight > self.strange) | (smell > self.strange_smell),
         )
 
     def learn(
@@ -196,11 +204,8 @@ class Rooms(nn.Module):
 
     def only(self, room: int) -> "Rooms":
         """Give one of the rooms as if there were no other; its network is the same, not a copy."""
-        other = copy(self)
-        # modules and buffers live in dictionaries of the module, which a shallow copy shares
-        other._modules = {"networks": nn.ModuleList([self[room]])}
-        other._buffers = {name: torch.zeros_like(buffer) for name, buffer in self._buffers.items()}
-        return other
+        other = Rooms(self._begin, first=self[room])
+        return other.to(self.present.device)
 
     def restore(self, sizes: Sequence[Mapping[str, int]]) -> None:
         """Make rooms of these sizes, to be filled with what has been saved of them."""
@@ -208,7 +213,9 @@ class Rooms(nn.Module):
         drawn = torch.Generator().manual_seed(0)
         self.networks = nn.ModuleList(
             [
-                self._begin(Sanger(features, size["components"], generator=drawn), **{**size, "components": 0})
+                self._begin(
+                    Sanger(features, size["components"], generator=drawn), **{**size, "components": 0}
+                )
                 for size in sizes
             ]
         ).to(self.present.device)
@@ -270,7 +277,7 @@ class Rooms(nn.Module):
         # some of a batch will do, and so telling takes little beside learning
         some = slice(None, None, max(1, len(strips) // ASKED))
         found = self.recognise(strips[some], log_odours[some])
-        return float((found.room == NOWHERE).float().mean()), int(found.nearest.mode().values)
+        return float(found.strange.float().mean()), int(found.nearest.mode().values)
 
     def _enter(
         self,

@@ -162,7 +162,7 @@ class CodeStage(StripStage):
         circuit.code.partial_fit(batch.seen)
 
     def finish(self, circuit: Circuit) -> None:
-        """Leave a code that has grown as many components as it needs to tell views as well as it did before."""
+        """Leave a code that has grown as many components as it needs to tell views as well as before."""
         if int(circuit.code.fixed):
             circuit.cut_code()
 
@@ -231,13 +231,14 @@ class OlfactionStage(CodedStage):
 
     def finish(self, circuit: Circuit) -> str | None:
         """Synchronise the charts; while they do not agree, add some and let all of them learn again."""
-        self._orient(circuit)
+        self.orient(circuit)
         if circuit.atlas_diagnosis() and len(circuit.charts) < circuit.most_charts:
             circuit.add_charts()
             return ChartStage.name
         return None
 
-    def _orient(self, circuit: Circuit) -> None:
+    def orient(self, circuit: Circuit, known: Float[Tensor, "charts"] | None = None) -> None:
+        """Let charts agree on a compass; turned as near as can be to headings that are known already."""
         atlas = Atlas.of(circuit.charts.points)
         intercepts, jacobians = circuit.olfaction.solve()
         axes, felt = heading_axes(circuit.charts.tangents, jacobians, atlas)
@@ -251,6 +252,8 @@ class OlfactionStage(CodedStage):
                     compass, circuit.charts.centres, gradients, intercepts, atlas
                 )
                 compass = max(compass, refined, key=lambda either: either.eigenvalue)
+            if known is not None:
+                compass = compass.turned_to(known)
             circuit.agreement = circuit.agreement.new_tensor([compass.sign_agreement, compass.eigenvalue])
             circuit.connected.fill_(compass.walking is not None)
         circuit.readout.solve(atlas, compass, intercepts, jacobians)

@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from copy import copy, deepcopy
+from copy import copy
 from dataclasses import KW_ONLY, dataclass, fields, replace
 from functools import partial
 from pathlib import Path
@@ -39,6 +39,7 @@ from neurons.errors import NeuronsError
 from neurons.layers.retina import Retina
 from neurons.layers.sanger import Sanger
 from neurons.network import Network
+from neurons.renewal import RenewalStage
 from neurons.rooms import Rooms
 from neurons.stages import SIGHT_ALONE, SMELL_FIRST, STAGES
 
@@ -82,6 +83,9 @@ class CognitiveMap:
     smell_first
         Whether place cells learn from what is smelt before anything is seen; else later, from what sight
         recalls of it.
+    time_constant
+        Views in which what a room has taught is forgotten to 1/e once its map is grown, where rooms change
+        for good (`neurons.renewal`); None forgets nothing.
     eye
         "panorama" for views all around, or "perspective" for any with borders; told from the views themselves
         when None (`cogmap.features.seam`), and a warning where it is told and they speak against it.
@@ -126,6 +130,7 @@ class CognitiveMap:
     heading_cells: Whole = 60
     smell: float | Whole | np.floating = 0.5
     smell_first: bool | np.bool = False
+    time_constant: float | Whole | np.floating | None = None
     eye: str | None = None
     epoch: Whole = 17_000
     seed: Whole = 0
@@ -169,7 +174,7 @@ class CognitiveMap:
     def fit(
         self, views: Any, odours: AnyArray | None = None, *, further: bool = False, progress: bool = False
     ) -> CognitiveMap:
-        """Learn a map from scratch, as epochs of `partial_fit` over the views; or a further room beside others.
+        """Learn a map from scratch, as epochs of `partial_fit` over the views; or a further room.
 
         Their order is random in every epoch but those of stages that learn from it, as the metric map does.
 
@@ -198,7 +203,7 @@ class CognitiveMap:
             self._check_enough(views.shape[0])
             self._begin(tuple(views.shape[1:]), logs.shape[1], found_eye(self.eye, views))
         rooms, smells = self._rooms, self._here(logs)
-        growing = Development(self.seconds_, batch=BATCH, seed=self.seed, progress=progress)
+        growing = Development(self.seconds_, batch=BATCH, seed=int(self.seed), progress=progress)
         with one_thread(self._device):
             with growing.timed("retina"):
                 strips = smells.new_empty(views.shape[0], self._retina.features)
@@ -441,7 +446,7 @@ class CognitiveMap:
         return len(self._learnt)
 
     def room(self, room: Whole) -> CognitiveMap:
-        """Give the map of one of its rooms, by number as in `Activity.room`; what it learns, both have learnt.
+        """Give the map of one of its rooms, numbered as in `Activity.room`; what it learns both have learnt.
 
         Raises
         ------
@@ -451,7 +456,7 @@ class CognitiveMap:
         rooms = self._learnt
         if not 0 <= room < len(rooms):
             raise CogmapError(f"room is {room}; this map knows {len(rooms)}, give 0 to {len(rooms) - 1}")
-        other = copy(self)
+        other: CognitiveMap = copy(self)
         other._rooms = rooms.only(int(room))
         return other
 
@@ -518,9 +523,8 @@ class CognitiveMap:
                 if name.startswith(RELAXED)
             }
             for name in state.keys() | weights.keys():
-                if weights[name].shape != state[name].shape:
-                    raise KeyError(name)
-                state[name].copy_(weights[name])
+                # as many numbers, or it is refused
+                state[name].copy_(weights[name].reshape(state[name].shape))
             if relaxed:
                 from cogmap.map.relaxed_places import RelaxedPlaces  # noqa: PLC0415
 
@@ -541,6 +545,8 @@ class CognitiveMap:
         if not isinstance(self.smell_first, bool | np.bool):
             raise CogmapError(f"smell_first is {self.smell_first!r}; give True or False")
         stages = SMELL_FIRST if self.smell_first else STAGES
+        if self.time_constant is not None:
+            stages = *stages, RenewalStage(time_constant=checked_number("time_constant", self.time_constant))
         begin = partial(
             _begun,
             self._retina.features,
@@ -580,7 +586,7 @@ class CognitiveMap:
         return log_odours(odours, views=views, odorants=odorants)
 
     def _of_rooms(self, diagnosis: Callable[[Network], str]) -> str:
-        """Say what a diagnosis has against rooms; of several each by its number, and not that still growing."""
+        """Say what a diagnosis has against rooms; of several by number, without the one still growing."""
         rooms = self._learnt
         if len(rooms) == 1:
             return diagnosis(rooms[0])
@@ -629,9 +635,7 @@ class CognitiveMap:
         return in_order(lambda batch: (batch[0], self._retina(batch[1].to(self._device))), batches())
 
 
-def _begun(
-    features: int, odorants: int, code: Sanger | None = None, *, seed: int, **sizes: Any
-) -> Network:
+def _begun(features: int, odorants: int, code: Sanger | None = None, *, seed: int, **sizes: Any) -> Network:
     """Begin the network of a room, on a code that others have learnt, if any."""
     # even the initial weights, orthonormal by QR, depend on the number of threads; and they are drawn on the
     # processor: the same on every device

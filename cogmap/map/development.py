@@ -106,7 +106,9 @@ class Development:
         winner = torch.cat(
             [
                 whole.charts.excite(whole.code(seen), 1, smelt).chart[:, 0]
-                for seen, smelt in zip(*(each.split(self._batch) for each in (strips, log_odours)), strict=True)
+                for seen, smelt in zip(
+                    *(each.split(self._batch) for each in (strips, log_odours)), strict=True
+                )
             ]
         )
         return [torch.isin(winner, part.charts) for part in parts]

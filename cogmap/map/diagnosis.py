@@ -58,7 +58,7 @@ class Diagnosis:
 
 
 def combined(found: Mapping[int, Diagnosis]) -> Diagnosis:
-    """Put the diagnoses of rooms together: each verdict is that all of them are to be trusted, or which not."""
+    """Put the diagnoses of rooms together: by each verdict all of them are trusted, or it says which not."""
 
     def verdict(kind: str) -> Verdict:
         told = {room: getattr(diagnosis, kind).reason for room, diagnosis in found.items()}

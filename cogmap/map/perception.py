@@ -24,8 +24,7 @@ def seen(
     told = [(views, _told(rooms[room], what)) for room, views, what in recalled]
     order = torch.cat([views for views, _ in told]).argsort()
     place, heading, phase, odour, position = (
-        torch.cat(parts)[order].cpu().numpy()
-        for parts in zip(*(parts for _, parts in told), strict=True)
+        torch.cat(parts)[order].cpu().numpy() for parts in zip(*(parts for _, parts in told), strict=True)
     )
     room, confidence = (part.cpu().numpy() for part in (found.room, found.confidence))
     return Activity(place, heading, phase, odour, position, room=room, room_confidence=confidence)

@@ -20,11 +20,11 @@ def pieces(
     atlas, points
         Overlaps of charts, and where the charts lie.
     longest
-        Overlaps join pieces up to this many times the spacing of either chart: some chart of every room has its
-        nearest neighbours in another; within a room hardly any is as long, and those around it are not.
+        Overlaps join pieces up to this many times the spacing of either chart. Some chart of every room has
+        its nearest neighbours in another; within a room hardly any overlap is as long.
     least
-        Share of the charts that a piece has at least. A few charts apart are no room: they stay with the piece
-        that is nearest to them.
+        Share of the charts that a piece has at least. A few charts apart are no room: they stay with the
+        piece that is nearest to them.
     """
     count = len(points)
     k, j = atlas.edges.T

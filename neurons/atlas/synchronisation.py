@@ -1,7 +1,7 @@
 """Synchronisation of signs, then phases, over the atlas: lateral weights turn local axes into one compass."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.sparse.linalg import eigsh
 from torch import Tensor
 
+from neurons.angles import wrap_angle
 from neurons.atlas.atlas import Atlas
 from neurons.errors import NeuronsError
 
@@ -48,6 +49,19 @@ class Compass:
         """By how much the heading changes in each chart, rad per unit of code."""
         along = self.scale * self.axes
         return along if self.walking is None else along + self.walking
+
+    def turned_to(self, phases: Float[Tensor, "charts"]) -> "Compass":
+        """Turn the whole compass, and mirror it if need be, so that it fits known headings best, rad."""
+        angle, known = (torch.polar(torch.ones_like(each), each) for each in (self.phases, phases))
+        straight, mirrored = (known * angle.conj()).mean(), (known * angle).mean()
+        if straight.abs() >= mirrored.abs():
+            return replace(self, phases=wrap_angle(self.phases + straight.angle()))
+        return replace(
+            self,
+            axes=-self.axes,
+            phases=wrap_angle(mirrored.angle() - self.phases),
+            walking=None if self.walking is None else -self.walking,
+        )
 
 
 @dataclass(frozen=True)

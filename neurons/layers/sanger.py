@@ -94,15 +94,13 @@ class Sanger(nn.Module):
         return other.to(self.weight.device)
 
     def cut(self) -> None:
-        """Keep the fewest new components that leave no more of views than the code did before it first grew."""
+        """Keep the fewest new components that leave no more of views than before the code first grew."""
         # the last ones first: what is left without them grows by their variances
         left = self.left + self.variance.flip(0).cumsum(0)
         spare = min(int((left <= self.enough).sum()), len(self) - int(self.fixed))
         if spare:
             self.left = left[spare - 1].clone()
-            self.weight, self.variance = (
-                part[:-spare].contiguous() for part in (self.weight, self.variance)
-            )
+            self.weight, self.variance = (part[:-spare].contiguous() for part in (self.weight, self.variance))
 
     def _measure(
         self, x: Float[Tensor, "views features"], y: Float[Tensor, "views components"], step: int

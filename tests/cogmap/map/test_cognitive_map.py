@@ -22,6 +22,7 @@ from cogmap.map.diagnosis import topology_verdict
 from neurons.circuit import Circuit
 from neurons.errors import NeuronsError
 from neurons.network import Network
+from neurons.rooms import Rooms
 from neurons.stages import STAGES, Batch, StripStage, chosen, joined
 from tests.cogmap.conftest import Refined
 from tests.cogmap.shape.numbers import betti_of
@@ -31,7 +32,7 @@ Grow = Callable[..., CognitiveMap]
 
 
 def same(a: CognitiveMap, b: CognitiveMap) -> bool:
-    one, other = a._network.state_dict(), b._network.state_dict()
+    one, other = a._rooms[0].state_dict(), b._rooms[0].state_dict()
     return one.keys() == other.keys() and all(
         torch.equal(one[name].nan_to_num(), other[name].nan_to_num()) for name in one
     )
@@ -64,7 +65,8 @@ def test_poses_cannot_reach_learning(stroll: Recording, learnt: CognitiveMap) ->
     assert same(learnt, learn(stroll.without_truth()))
     assert same(learnt, learn(lied_to))
     for taught in (CognitiveMap.fit, CognitiveMap.partial_fit, CognitiveMap.perceive):
-        assert set(inspect.signature(taught).parameters) <= {"self", "views", "odours", "progress", "jump"}
+        told = set(inspect.signature(taught).parameters)
+        assert told <= {"self", "views", "odours", "progress", "further", "jump"}
 
 
 def test_one_thread_or_two_give_the_same_map(stroll: Recording, camera: Camera, learnt: CognitiveMap) -> None:
@@ -109,6 +111,7 @@ def test_fit_is_epochs_of_partial_fit(
 
     monkeypatch.setattr(CognitiveMap, "_strips", which)
     monkeypatch.setattr(Network, "see", see)
+    monkeypatch.setattr(Rooms, "_strange", lambda *_: (0.0, 0))  # which has nothing to look at here
     streamed = CognitiveMap(charts=learnt.charts, components=learnt.components, epoch=len(stroll), seed=0)
     order = np.random.default_rng(0)
     for stage in STAGES:
@@ -169,15 +172,15 @@ def test_diagnosis_of_a_map(cmap: CognitiveMap, monkeypatch: pytest.MonkeyPatch)
     assert told.metric_map.reason == cmap.metric_reason_
     assert told.topology.trusted
     monkeypatch.setattr(topology, "betti", lambda _: betti_of((1, 1, 0), ("", "close", "")))
-    assert cmap.diagnosis().topology == topology_verdict(topology.homology_of_charts(cmap._network.charts))
+    assert cmap.diagnosis().topology == topology_verdict(topology.homology_of_charts(cmap._rooms[0].charts))
     assert "close" in cmap.diagnosis().topology.reason
     loopless = {"seen": betti_of((1, 0, 0))}
     assert cmap.diagnosis(loopless).topology.trusted
     misled = copy.deepcopy(cmap)
-    misled._network.agreement[1] = torch.nan  # no loop closes
+    misled._rooms[0].agreement[1] = torch.nan  # no loop closes
     assert "never turned all round, or these are too few views" in misled.diagnosis(loopless).topology.reason
     misled = copy.deepcopy(cmap)
-    misled._network.ambiguity = torch.tensor([0.1, 0.0])
+    misled._rooms[0].ambiguity = torch.tensor([0.1, 0.0])
     told = misled.diagnosis({})
     assert told.heading.trusted
     assert "several places" in told.place.reason == misled.reason_
@@ -251,10 +254,10 @@ def test_order_teaches_a_metric_map_and_shuffled_views_do_no_harm(
 def test_views_that_do_not_follow_can_be_told(walk: Recording, cmap: CognitiveMap) -> None:
     grown = copy.deepcopy(cmap)
     for jump in (False, True):
-        grown._network.views_seen.fill_(grown._network.begins("metric_map"))
+        grown._rooms[0].views_seen.fill_(grown._rooms[0].begins("metric_map"))
         grown.partial_fit(walk.views[:20], walk.odours[:20], jump=True)
         grown.partial_fit(walk.views[20:21], walk.odours[20:21], jump=jump)
-        assert grown._network.metric_map.recent.isnan().any() == jump
+        assert grown._rooms[0].metric_map.recent.isnan().any() == jump
 
 
 def test_a_coarse_map_says_so(walk: Recording) -> None:
@@ -269,7 +272,7 @@ def test_a_coarse_map_says_so(walk: Recording) -> None:
 def test_a_coarse_map_adds_charts_until_they_agree(walk: Recording, tmp_path: Path) -> None:
     grown = CognitiveMap(charts=100, components=40, most_charts=1000).fit(walk.views, walk.odours)
     assert grown.trusted_, grown.reason_
-    assert len(grown._network.charts) in {200, 400, 800}
+    assert len(grown._rooms[0].charts) in {200, 400, 800}
     grown.save(tmp_path / "map")
     loaded = CognitiveMap.load(tmp_path / "map")
     assert loaded.most_charts == 1000
@@ -543,13 +546,13 @@ def test_a_bad_setting_is_refused_before_anything_is_learnt(
     cmap = CognitiveMap(charts=150, **setting)
     with pytest.raises(CogmapError, match=f"{name} is"):
         cmap.fit(stroll.views, stroll.odours)
-    assert not hasattr(cmap, "_network")
+    assert not hasattr(cmap, "_rooms")
 
 
 def test_a_map_is_cloned_and_told_its_parameters(learnt: CognitiveMap) -> None:
     blank = clone(learnt)
     assert blank.get_params() == learnt.get_params()
-    assert not hasattr(blank, "_network")
+    assert not hasattr(blank, "_rooms")
     assert blank.set_params(charts=7, seed=np.int64(2)).charts == 7
     with pytest.raises(CogmapError, match="unknown parameter 'chart'; choose one of charts"):
         blank.set_params(chart=7)

@@ -37,7 +37,7 @@ def test_a_newborn_learns_the_same_weights_again(cmap: CognitiveMap, walk: Recor
 
 
 def excited(cmap: CognitiveMap, walk: Recording) -> ChartActivity:
-    layers = cmap._network
+    layers = cmap._rooms[0]
     with torch.no_grad():
         codes = torch.from_numpy(cmap.encode(walk.views))
         # as the charts have voted

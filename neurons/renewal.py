@@ -1,0 +1,75 @@
+"""Renewal: what a room has taught is forgotten slowly, and learnt from it as it is by now."""
+
+from dataclasses import dataclass
+from math import exp
+
+import torch
+from jaxtyping import Float
+from torch import Tensor, nn
+
+from neurons.circuit import Circuit
+from neurons.stages import (
+    AfferentStage,
+    Batch,
+    ChartStage,
+    CorrectedMetricMapStage,
+    OlfactionStage,
+    StripStage,
+)
+
+
+class Clock(nn.Module):
+    """Counts views since the charts have last agreed."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.views: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
+
+
+@dataclass(frozen=True)
+class RenewalStage(StripStage):
+    """The last stage of a map that is to follow a room that changes; it never ends.
+
+    Sums of olfaction and afferents decay by 1/e in `time_constant` views, while charts move to what they win
+    now. As often the charts agree anew, on a compass that is turned to the one before, and places are laid out
+    from the last of the walk; in between all is told as it was.
+
+    Parameters
+    ----------
+    time_constant
+        Views.
+    """
+
+    name = "renewal"
+    recent = CorrectedMetricMapStage.recent
+    epochs: int = 0
+    time_constant: float = 17_000.0
+
+    def layers(self, circuit: Circuit) -> dict[str, nn.Module]:  # noqa: ARG002
+        """Make the clock."""
+        return {"renewed": Clock()}
+
+    def learn(self, circuit: Circuit, batch: Batch[Float[Tensor, "views features"]]) -> None:
+        """Forget a little, add views to what is summed, and let the charts that they win move."""
+        count = len(batch.seen)
+        for name in (*OlfactionStage.sums, *AfferentStage.sums):
+            circuit.get_buffer(name).mul_(exp(-count / self.time_constant))
+        codes, recalled = circuit.code(batch.seen), circuit.recall(batch.seen)
+        told = {"log_odours": batch.log_odours, "progress": 1.0, "window": self.time_constant}
+        OlfactionStage().learn(circuit, Batch(codes, **told))
+        CorrectedMetricMapStage().learn(circuit, Batch(recalled, **told))
+        AfferentStage().learn(circuit, Batch(recalled, **told))
+        few = ChartStage().winners[1]
+        circuit.charts.partial_fit(codes, batch.log_odours, winners=few, window=self.time_constant)
+        clock = circuit.get_buffer("renewed.views")
+        clock += count
+        if int(clock) >= self.time_constant:
+            clock.zero_()
+            self._agree(circuit)
+
+    @staticmethod
+    def _agree(circuit: Circuit) -> None:
+        circuit.charts.freeze()
+        OlfactionStage().orient(circuit, known=circuit.readout.phases)
+        CorrectedMetricMapStage().finish(circuit)
+        circuit.metric_map.begin_again()
