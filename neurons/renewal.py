@@ -30,8 +30,8 @@ class Clock(nn.Module):
 class RenewalStage(StripStage):
     """The last stage of a map that is to follow a room that changes; it never ends.
 
-    Sums of olfaction and afferents decay by 1/e in `time_constant` views, while charts move to what they win
-    now. As often the charts agree anew, on a compass that is turned to the one before, and places are laid out
+    Sums of olfaction and afferents decay to 1/e in `time_constant` views, while charts move to what they
+    win. As often the charts agree anew, on a compass that is turned to the one before, and places are laid out
     from the last of the walk; in between all is told as it was.
 
     Parameters

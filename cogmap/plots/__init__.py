@@ -23,6 +23,10 @@ from cogmap.plots.cells.grid_cells import plot_grid_cells
 from cogmap.plots.cells.heading_cells import plot_tuning_curves
 from cogmap.plots.cells.learning_curves import plot_courses
 from cogmap.plots.cells.place_cells import plot_rate_maps
+from cogmap.plots.many_rooms.forgetting import plot_forgetting
+from cogmap.plots.many_rooms.morph import plot_morph
+from cogmap.plots.many_rooms.new_wall import plot_new_wall
+from cogmap.plots.many_rooms.remapping import plot_remapping
 from cogmap.plots.one_factor import plot_cases
 from cogmap.plots.rooms.contact_sheet import plot_sheet
 from cogmap.plots.rooms.goals import plot_goals
@@ -65,6 +69,7 @@ __all__ = [
     "plot_expectations",
     "plot_film",
     "plot_foretold",
+    "plot_forgetting",
     "plot_goals",
     "plot_grid_cells",
     "plot_joint_reach",
@@ -74,11 +79,14 @@ __all__ = [
     "plot_look_alikes",
     "plot_looking_round",
     "plot_metric_map",
+    "plot_morph",
     "plot_neighbours",
+    "plot_new_wall",
     "plot_position",
     "plot_quasi_metric",
     "plot_rate_maps",
     "plot_reached",
+    "plot_remapping",
     "plot_room",
     "plot_routes",
     "plot_sheet",

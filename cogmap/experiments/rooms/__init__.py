@@ -1,0 +1,1 @@
+"""Many rooms, one file each."""

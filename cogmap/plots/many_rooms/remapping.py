@@ -1,0 +1,73 @@
+"""Remapping: fields of the same cells in several rooms, and how alike rooms are to the population."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+
+from cogmap.cells import RateMaps
+from cogmap.errors import CogmapError
+from cogmap.plots.style import BAD, GOOD, INK, SMALL, SOFT, TINY, colour_bar, draw_bins, new_figure, tidy
+
+CELLS = 6
+KINDS = {"global": BAD, "rate": GOOD, "none": SOFT}
+
+
+def plot_remapping(rooms: Mapping[str, RateMaps], pairs: pd.DataFrame, changes: pd.DataFrame) -> Figure:
+    """Draw rate maps of six cells in every room, and below them correlations between rooms and changes.
+
+    Parameters
+    ----------
+    rooms
+        Maps of the same place cells by the name of the room; the six fire most in the first.
+    pairs
+        `room`, `other_room` and `correlation` of population vectors, a row a pair.
+    changes
+        `change`, `remapping_index` and `remapping` (global, rate or none), a row a change.
+
+    Raises
+    ------
+    CogmapError
+        Without a room.
+    """
+    if not rooms:
+        raise CogmapError("no rooms to draw; give rate maps of at least one")
+    figure = new_figure(1.15 * len(rooms) + 0.6, 0.95 * CELLS + 4.2)
+    above, below = figure.subfigures(2, 1, height_ratios=[0.95 * CELLS + 0.3, 3.9])
+    panels = above.subplots(CELLS, len(rooms), squeeze=False)
+    first = next(iter(rooms.values()))
+    shown = np.argsort(-np.nanmax(first.rates, axis=(1, 2)))[:: max(1, len(first) // CELLS)][:CELLS]
+    for line, cell in zip(panels, shown, strict=False):
+        top = max(float(np.nanmax(maps.rates[cell])) for maps in rooms.values())
+        for axes, (name, maps) in zip(line, rooms.items(), strict=True):
+            drawn = draw_bins(axes, maps.edges, maps.rates[cell], "viridis", low=0.0, high=max(top, 1e-9))
+            axes.set_aspect("equal")
+            axes.set(xticks=[], yticks=[])
+            if axes in panels[0]:
+                axes.set_title(name.replace("_", "\n"), fontsize=TINY, color=INK)
+        line[0].set_ylabel(f"cell {cell}", fontsize=TINY, color=INK)
+        colour_bar(line[-1], drawn, "Hz")
+    left, right = below.subplots(1, 2, width_ratios=[1, 1.1])
+    names = list(rooms)
+    matrix = np.eye(len(names))
+    for one, other, r in zip(pairs["room"], pairs["other_room"], pairs["correlation"], strict=True):
+        i, j = names.index(one), names.index(other)
+        matrix[i, j] = matrix[j, i] = r
+    tidy(left, title="population vectors, place by place", size=SMALL)
+    image = left.imshow(matrix, cmap="RdBu_r", vmin=-1, vmax=1)
+    plain = [name.replace("_", " ") for name in names]
+    left.set_xticks(range(len(names)), plain, rotation=60, ha="right", fontsize=TINY)
+    left.set_yticks(range(len(names)), plain, fontsize=TINY)
+    colour_bar(left, image, "correlation")
+    tidy(right, x="remapping index", title="what changes in the first room", size=SMALL)
+    places = np.arange(len(changes))[::-1]
+    colours = changes["remapping"].map(KINDS)
+    right.barh(places, changes["remapping_index"].clip(lower=0), color=colours, height=0.6)
+    right.set_yticks(places, changes["change"], fontsize=TINY)
+    right.set_xlim(0, 1.25)
+    for place, index, kind in zip(places, changes["remapping_index"], changes["remapping"], strict=True):
+        right.text(max(index, 0) + 0.03, place, kind, va="center", fontsize=TINY, color=INK)
+    return figure
