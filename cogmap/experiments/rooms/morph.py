@@ -27,6 +27,8 @@ BOX_MATERIALS = ("blue", "books", "white", "tiles", "timber")
 STEPS = 10
 SEEDS = 3
 """Walks, maps and curves."""
+SWITCHED = 0.2
+"""Least rise of a curve that switches."""
 NEAR_DEG = 15.0
 """A heading follows a room's compass when it is off by less."""
 
@@ -58,22 +60,11 @@ def morph(conditions: Conditions) -> Result:
         reasons.append(pair.reason)
         rows += [{"seed": seed, **row} for row in pair.curve()]
     curves = pd.DataFrame(rows)
-    fits = {what: [_switch(each, what) for _, each in curves.groupby("seed")] for what in CURVES}
     return Result(
         metrics={
             "trusted": not any(reasons),
             "reason": "; ".join(filter(None, reasons)),
-            **{
-                f"switch_at_{what}": float(np.mean([fit[0] for fit in found])) for what, found in fits.items()
-            },
-            **{
-                f"switch_width_{what}": float(np.mean([fit[1] for fit in found]))
-                for what, found in fits.items()
-            },
-            **{
-                f"switch_width_{what}_spread": float(np.std([fit[1] for fit in found], ddof=1))
-                for what, found in fits.items()
-            },
+            **_switches(curves),
             "least_confidence": float(curves.groupby("blend")["confidence"].mean().min()),
             "most_nowhere": float(curves.groupby("blend")["nowhere"].mean().max()),
         },
@@ -166,16 +157,36 @@ class _Pair:
         return rows
 
     def _right(self, seen: Activity, trial: Trial, train: Activity) -> float:
-        """Share of views whose heading is right in the compass of a room."""
+        """Share of views whose heading is right in the compass of a room; none where there is none."""
+        if not (np.isfinite(seen.phase).all() and np.isfinite(train.phase).all()):
+            return 0.0
         frame = fit_heading_frame(train.phase, trial.truth.train[:, 2])
         off = np.abs(heading_errors(seen.phase, self.walk.require("poses")[:, 2], frame))
         return float(np.mean(np.rad2deg(off) < NEAR_DEG))
 
 
-def _switch(curve: pd.DataFrame, what: str) -> tuple[float, float]:
-    """Fit a logistic to a curve: the blend at its middle, and its width from a tenth to nine tenths."""
+def _switches(curves: pd.DataFrame) -> dict[str, float]:
+    """Middle and width of each switch, means over the seeds, and how much widths differ between these."""
+    figures = {}
+    for what in CURVES:
+        found = [_switch(each, what) for _, each in curves.groupby("seed")]
+        if None not in found:
+            middle, width = np.array(found, float).T
+            figures[f"switch_at_{what}"] = float(middle.mean())
+            figures[f"switch_width_{what}"] = float(width.mean())
+            figures[f"switch_width_{what}_spread"] = float(width.std(ddof=1))
+    return figures
+
+
+def _switch(curve: pd.DataFrame, what: str) -> tuple[float, float] | None:
+    """Fit a logistic to a curve: the blend at its middle, and its width from a tenth to nine tenths.
+
+    None where the curve ends near where it begins: nothing has switched.
+    """
     blend: Float[np.ndarray, "steps"] = curve["blend"].to_numpy(float)
     level = curve[what].to_numpy(float)
+    if not level[-1] - level[0] > SWITCHED:
+        return None
 
     def logistic(
         x: Float[np.ndarray, "steps"], low: float, high: float, middle: float, slope: float
