@@ -156,9 +156,16 @@ class Rooms(nn.Module):
         log_odours: Float[Tensor, "views odorants"] | None,
     ) -> list["_Look"]:
         """Look at views with the charts of every room."""
-        codes = self.code(strips)
-        energy = (strips - self.code.mean).square().sum(dim=1)
-        return [_Look.by(self[room], codes, energy, log_odours) for room in self._asked]
+        code = self.code
+        codes = code(strips)
+        energy = (strips - code.mean).square().sum(dim=1)
+        told = code.orthonormal(codes).square().cumsum(dim=1)
+        looks = []
+        for room in self._asked:
+            components = len(self[room].code)  # the first ones
+            off = (energy - told[:, components - 1]).clamp(min=0)
+            looks.append(_Look.by(self[room], codes[:, :components], off, log_odours))
+        return looks
 
     def sniff(self, log_odours: Float[Tensor, "views odorants"]) -> Recognised:
         """Tell of which room smells are, in the dark."""
@@ -224,7 +231,9 @@ class Rooms(nn.Module):
         """Begin a further room, and give its network."""
         network = self._begin(self.code)
         # one population: a heading cell that prefers a direction in one room prefers it in the next, too
-        network.heading.preferred.copy_(self[0].heading.preferred)
+        preferred = self[0].heading.preferred
+        if preferred.isfinite().all():  # not where the first room has no compass
+            network.heading.preferred.copy_(preferred)
         self.networks.append(network.to(self.present.device))
         return network
 
@@ -320,14 +329,13 @@ class _Look(NamedTuple):
         cls,
         network: Network,
         codes: Float[Tensor, "views components"],
-        energy: Float[Tensor, "views"],
+        off: Float[Tensor, "views"],
         log_odours: Float[Tensor, "views odorants"] | None,
     ) -> "_Look":
-        """Look at views of so much energy, whose code may have grown since."""
-        charts, codes = network.charts, codes[:, : len(network.code)]
+        """Look at codes that leave so much of their views, squared."""
+        charts = network.charts
         nearest = charts.excite(codes, network.readout.winners, log_odours)
         first = nearest.chart[:, :1]
-        off = (energy - codes.square().sum(dim=1)).clamp(min=0)
         sight = charts.residuals(codes, first)[:, 0].square().sum(dim=1) + off
         usual_sight, usual_smell = charts.misfits
         smell = torch.zeros_like(sight)

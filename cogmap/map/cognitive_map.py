@@ -194,7 +194,7 @@ class CognitiveMap:
         Raises
         ------
         CogmapError
-            For fewer views than charts; where rooms are known, for fewer views of no known room.
+            For fewer views than charts, none of them of a known room.
         """
         known = further and hasattr(self, "_rooms")
         views = checked_views(views, self.view_shape_ if known else None)
@@ -213,8 +213,10 @@ class CognitiveMap:
                 batches = torch.arange(len(strips), device=strips.device).split(BATCH)
                 new = [rooms.are_new(strips[rows], smells[rows]) for rows in batches]
                 fresh = [rows for rows, novel in zip(batches, new, strict=True) if novel]
-                if fresh:
-                    self._check_enough(sum(map(len, fresh)))
+                if all(new):
+                    self._check_enough(len(strips))
+                elif sum(map(len, fresh)) < self.charts:  # a few strange views begin no room
+                    new, fresh = [False] * len(new), []
                 jump = True
                 for rows, novel in zip(batches, new, strict=True):
                     if not novel:

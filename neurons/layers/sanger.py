@@ -79,9 +79,15 @@ class Sanger(nn.Module):
     def off(
         self, x: Float[Tensor, "views features"], y: Float[Tensor, "views components"]
     ) -> Float[Tensor, "views"]:
-        """Square of what the code does not tell of each view, |x − mean|² − |y|²."""
-        # below 0 by as much as rows that have not quite settled overlap
-        return ((x - self.mean).square().sum(dim=1) - y.square().sum(dim=1)).clamp(min=0)
+        """Square of what the code does not tell of each view: its distance from the span of the components."""
+        return ((x - self.mean).square().sum(dim=1) - self.orthonormal(y).square().sum(dim=1)).clamp(min=0)
+
+    def orthonormal(self, y: Float[Tensor, "views components"]) -> Float[Tensor, "views components"]:
+        """Give codes on orthonormal components of which the first n span what the first n of the code do."""
+        # W = L Q with Q orthonormal, so that W Wᵀ = L Lᵀ, and y = W (x − mean) is L⁻¹ y on the rows of Q
+        overlap = (self.weight @ self.weight.T).double()
+        factor = torch.linalg.cholesky(overlap).to(y)
+        return torch.linalg.solve_triangular(factor, y.T, upper=False).T
 
     def grown(self, components: int, *, generator: torch.Generator) -> "Sanger":
         """Give a code that has these components, fixed, and so many more, which have learnt nothing yet."""
@@ -105,7 +111,7 @@ class Sanger(nn.Module):
     def _measure(
         self, x: Float[Tensor, "views features"], y: Float[Tensor, "views components"], step: int
     ) -> None:
-        """Keep a running mean of what is left, over the last 40 batches."""
+        """Keep a running mean of what is left, over the last 20 batches."""
         left = self.off(x, y).mean()
         # the first batch sets it
-        self.left = left if step == 1 else self.left + max(1 / step, 1 / 40) * (left - self.left)
+        self.left = left if step == 1 else self.left + max(1 / step, 1 / 20) * (left - self.left)

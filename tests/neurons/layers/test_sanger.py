@@ -67,3 +67,31 @@ def test_same_generator_same_bits() -> None:
     first, again, other = learnt(x, epochs=1), learnt(x, epochs=1), learnt(x, epochs=1, seed=3)
     assert torch.equal(first.weight, again.weight)
     assert not torch.equal(first.weight, other.weight)
+
+
+def test_a_code_that_grows_keeps_what_it_has_and_learns_what_is_left(x: Tensor, layer: Sanger) -> None:
+    other = data(seed=5)
+    grown = layer.grown(COMPONENTS, generator=torch.Generator().manual_seed(4))
+    order = torch.Generator().manual_seed(6)
+    for _ in range(12):
+        for batch in other[torch.randperm(len(other), generator=order)].split(100):
+            grown.partial_fit(batch)
+    torch.testing.assert_close(grown.weight[:COMPONENTS], layer.weight, rtol=0, atol=0)
+    torch.testing.assert_close(grown.mean, layer.mean, rtol=0, atol=0)
+    beyond = (other - layer.mean) - layer(other) @ layer.weight
+    best = np.square(np.linalg.svd(beyond.double().numpy(), compute_uv=False)[:COMPONENTS]).sum()
+    new = grown.weight[COMPONENTS:].double().numpy()
+    captured = np.square(beyond.double().numpy() @ np.linalg.qr(new.T)[0]).sum()
+    assert captured > 0.99 * best
+    assert float(grown.off(other, grown(other)).mean()) == pytest.approx(float(grown.left), rel=0.1)
+
+
+def test_a_grown_code_is_cut_to_what_leaves_no_more_than_before(x: Tensor, layer: Sanger) -> None:
+    grown = layer.grown(COMPONENTS, generator=torch.Generator().manual_seed(4))
+    for _ in range(3):
+        for batch in x.split(100):
+            grown.partial_fit(batch)
+    assert float(grown.enough) == float(layer.left)
+    grown.cut()  # of the same views the old components leave enough, but for a few that are learnt again
+    assert COMPONENTS <= len(grown) < COMPONENTS + 4
+    assert float(grown.off(x, grown(x)).mean()) == pytest.approx(float(grown.left), rel=0.2)

@@ -1,0 +1,77 @@
+from copy import deepcopy
+
+import pytest
+import torch
+
+from neurons.network import Network
+from neurons.renewal import RenewalStage
+from neurons.stages import STAGES
+from tests.neurons.test_rooms import BATCH, EPOCH, FEATURES, ODORANTS, walk
+
+SIZES = {"charts": 120, "most_charts": 120, "components": 6, "place_cells": 10, "heading_cells": 6}
+
+
+def grown(time_constant: float) -> Network:
+    stages = (*STAGES, RenewalStage(time_constant=time_constant))
+    network = Network(
+        FEATURES, ODORANTS, **SIZES, epoch=EPOCH, stages=stages, generator=torch.Generator().manual_seed(0)
+    )
+    for day in range(network.epochs):
+        strips, smells = walk(0, EPOCH, day)
+        for start in range(0, EPOCH, BATCH):
+            network.learn(strips[start : start + BATCH], smells[start : start + BATCH])
+    return network
+
+
+@pytest.fixture(scope="module")
+def network() -> Network:
+    return grown(float(EPOCH))
+
+
+def live(network: Network, days: int, shift: float) -> None:
+    for day in range(days):
+        strips, smells = walk(0, EPOCH, 50 + day)
+        for start in range(0, EPOCH, BATCH):
+            network.learn(strips[start : start + BATCH], smells[start : start + BATCH] + shift)
+
+
+def test_it_takes_no_epoch_and_never_ends(network: Network) -> None:
+    assert network.stage.name == "renewal"
+    assert not network.unfinished
+    assert network.epochs == sum(stage.epochs for stage in STAGES)
+
+
+def test_what_a_room_smells_of_now_replaces_what_it_smelt_of(network: Network) -> None:
+    living = deepcopy(network)
+    strips = walk(0, 200, 99)[0]
+    live(living, 4, 2.0)
+    moved = (living.recall(strips).odour - network.recall(strips).odour).mean()
+    assert moved == pytest.approx(2.0, abs=0.3)
+
+
+def test_sums_fade_to_those_of_the_last_views(network: Network) -> None:
+    living = deepcopy(network)
+    live(living, 6, 0.0)
+    # Σ e^(−n/τ) over batches: what a time constant of an epoch leaves in the end
+    left = BATCH / (1 - torch.tensor(-BATCH / EPOCH).exp())
+    assert float(living.place.afferents.activity.sum()) == pytest.approx(float(left), rel=0.02)
+
+
+def test_the_compass_stays_where_it_was(network: Network) -> None:
+    living = deepcopy(network)
+    strips = walk(0, 200, 98)[0]
+    live(living, 3, 0.0)
+    turned = living.recall(strips).heading - network.recall(strips).heading
+    assert torch.atan2(turned.sin(), turned.cos()).abs().median() < 0.2
+
+
+def test_nothing_agrees_anew_before_its_time(network: Network) -> None:
+    living = deepcopy(network)
+    strips, smells = walk(0, EPOCH - BATCH, 97)
+    for start in range(0, len(strips), BATCH):
+        living.learn(strips[start : start + BATCH], smells[start : start + BATCH])
+    torch.testing.assert_close(living.readout.phases, network.readout.phases, rtol=0, atol=0)
+    assert int(living.get_buffer("renewed.views")) == EPOCH - BATCH
+    living.learn(strips[:BATCH], smells[:BATCH])
+    assert int(living.get_buffer("renewed.views")) == 0
+    assert not torch.equal(living.readout.phases, network.readout.phases)
