@@ -35,6 +35,7 @@ def live(network: Network, days: int, shift: float) -> None:
             network.learn(strips[start : start + BATCH], smells[start : start + BATCH] + shift)
 
 
+@pytest.mark.near_guard  # what is forgotten does not depend on what is trusted
 def test_it_takes_no_epoch_and_never_ends(network: Network) -> None:
     assert network.stage.name == "renewal"
     assert not network.unfinished

@@ -24,9 +24,8 @@ def test_clouds_apart_are_pieces() -> None:
 
 
 def test_an_overlap_much_longer_than_those_around_it_joins_nothing() -> None:
-    # three lone charts between two clouds have neighbours in both
-    stray = torch.tensor([[2.4, 0.5, 0.5], [2.5, 0.5, 0.5], [2.6, 0.5, 0.5]])
-    points = torch.cat([cloud(200, 0.0, 4), cloud(200, 4.0, 5), stray])
+    # a lone chart just outside of one cloud has its nearest ones in both
+    points = torch.cat([cloud(200, 0.0, 4), cloud(200, 1.5, 5), torch.tensor([[1.25, 1.25, 1.25]])])
     atlas = Atlas.of(points)
     assert len(pieces(atlas, points)) == 2
     assert len(pieces(atlas, points, longest=100.0)) == 1
