@@ -1,0 +1,48 @@
+"""Progress: how far a map has grown, and how long it will take."""
+
+from __future__ import annotations
+
+from types import TracebackType
+
+from tqdm import tqdm
+
+COSTS = {
+    "ways": 40.0,
+    "code": 320.0,
+    "codes": 240.0,
+    "charts": 200.0,
+    "olfaction": 100.0,
+    "recalled": 80.0,
+    "cells": 30.0,
+    "metric_map": 60.0,
+    "corrected_metric_map": 60.0,
+    "afferents": 60.0,
+}
+"""What a view costs, µs on two cores, as measured in `docs/many_explorers.md`: they tell the time left."""
+USUAL = 100.0
+"""What it costs in a stage that is not among them."""
+
+
+class Progress:
+    """A bar on stderr with the time left, in what all that is left costs."""
+
+    def __init__(self, *, disable: bool) -> None:
+        shown = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}, {remaining} left"
+        self._bar = tqdm(total=0.0, disable=disable, bar_format=shown, smoothing=0.1)
+
+    def __enter__(self) -> Progress:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._bar.close()
+
+    def expect(self, name: str, views: int) -> None:
+        """Count on so many views more in a stage."""
+        self._bar.total += COSTS.get(name, USUAL) * views
+
+    def update(self, name: str, views: int) -> None:
+        """Say that so many views more have passed."""
+        self._bar.set_description(name, refresh=False)
+        self._bar.update(COSTS.get(name, USUAL) * views)
