@@ -4,7 +4,8 @@ import logging
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError
-from typing import Any, NamedTuple, TypeVar
+from itertools import islice
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from joblib import Parallel, delayed
 from joblib.externals.loky.process_executor import TerminatedWorkerError
@@ -72,7 +73,7 @@ def on_cluster(
         over one item, and what the work raises.
     """
     with _client(address) as client:
-        from distributed import KilledWorker, as_completed  # noqa: PLC0415  part of an extra
+        from distributed import KilledWorker  # noqa: PLC0415  part of an extra
 
         try:
             client.wait_for_workers(1, timeout=PATIENCE)
@@ -80,47 +81,55 @@ def on_cluster(
             raise CogmapError(
                 f"the Dask scheduler at {address} has no workers; start one with `dask worker {address}`"
             ) from None
-        left, counted, room = iter(items), 0.0, 0
-        done, futures = as_completed([], loop=client.loop), set[Any]()
-        lost = f"the Dask scheduler at {address} was lost; {wording.kept}"
-
-        def give() -> None:
-            """Give out so many items that nobody waits, and no more."""
-            nonlocal counted, room
-            if time.monotonic() - counted > RECOUNT:
-                room, counted = AHEAD * max(1, len(client.nthreads())), time.monotonic()
-            while len(futures) < room:
-                try:
-                    item = next(left)
-                except StopIteration:
-                    return
-                futures.add(future := client.submit(work, item, pure=False))
-                done.add(future)
-
+        lost = CogmapError(f"the Dask scheduler at {address} was lost; {wording.kept}")
+        given = _Given(client, work, iter(items))
         try:
-            give()
-            while futures:
-                while not done.has_ready():
-                    if client.status != "running":
-                        raise CogmapError(lost)
-                    give()
-                    time.sleep(0.05)
-                future = next(done)
-                futures.discard(future)
-                found = future.result()
-                # what it was given and what came of it is kept by nobody
-                del future
-                give()
-                yield found
+            while (future := given.take(lost)) is not None:
+                yield future.result()
         except KilledWorker:
             raise CogmapError(
                 f"workers that did {wording.item} were killed, perhaps for lack of memory; {wording.kept}"
             ) from None
         except (OSError, CancelledError):
-            raise CogmapError(lost) from None
+            raise lost from None
         finally:
             if client.status == "running":
-                client.cancel(list(futures))
+                client.cancel(list(given.futures))
+
+
+class _Given(Generic[Item, Done]):
+    """What a cluster has been given and is not done with: as much as keeps all busy, and no more."""
+
+    def __init__(self, client: Any, work: Callable[[Item], Done], left: Iterator[Item]) -> None:
+        from distributed import as_completed  # noqa: PLC0415  part of an extra
+
+        self.futures = set[Any]()
+        self._client, self._work, self._left = client, work, left
+        self._done = as_completed([], loop=client.loop)
+        self._room, self._counted = 0, -RECOUNT
+
+    def take(self, lost: Exception) -> Any:
+        """Wait for the next future that is done, and give what is left to who is free; None at the end."""
+        self._give()
+        if not self.futures:
+            return None
+        while not self._done.has_ready():
+            if self._client.status != "running":
+                raise lost
+            time.sleep(0.05)
+            self._give()
+        future = next(self._done)
+        self.futures.discard(future)
+        return future
+
+    def _give(self) -> None:
+        now = time.monotonic()
+        if now - self._counted >= RECOUNT:
+            self._room, self._counted = AHEAD * max(1, len(self._client.nthreads())), now
+        for item in islice(self._left, max(0, self._room - len(self.futures))):
+            future = self._client.submit(self._work, item, pure=False)
+            self.futures.add(future)
+            self._done.add(future)
 
 
 def _client(address: str) -> Any:

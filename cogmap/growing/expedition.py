@@ -97,8 +97,8 @@ class Expedition:
         CogmapError
             Where its motion gives it another number of views.
         """
-        room, rows = self._room, self.rows(explorer)
-        walk_rng, nose_rng = (np.random.default_rng(child) for child in self._seeds(explorer).spawn(2))
+        room, rows = parsed(self.room), self.rows(explorer)
+        walk_rng, nose_rng = (np.random.default_rng(child) for child in self.chance(explorer).spawn(2))
         walk = self.motion.walk(room, self.body, rows.stop - rows.start, walk_rng)
         if len(walk.times) != rows.stop - rows.start:
             raise CogmapError(
@@ -122,7 +122,9 @@ class Expedition:
         parts = {"motion": self.motion, "camera": self.camera, "nose": self.nose, "body": self.body}
         told = {name: {"kind": type(part).__name__, **part.model_dump()} for name, part in parts.items()}
         counts = {"explorers": self.explorers, "views": self.views, "seed": self.seed}
-        described: dict[str, Any] = json.loads(json.dumps({"arena": self.room, **told, **counts}, default=str))
+        described: dict[str, Any] = json.loads(
+            json.dumps({"arena": self.room, **told, **counts}, default=str)
+        )
         return described
 
     def _seeds(self, *key: int) -> np.random.SeedSequence:
@@ -152,12 +154,12 @@ class Painted:
         """Paint some of them; the noise of the eye goes by the first."""
         there, where = self._poses[rows], self._expedition
         views = np.empty((len(there), *self.shape[1:]), np.uint8)
-        rng = np.random.default_rng(where._seeds(*self._key, rows.start or 0))
-        see(where.camera, where._room, where.body, there, out=views, rng=rng)
+        rng = np.random.default_rng(where.chance(*self._key, rows.start or 0))
+        see(where.camera, parsed(where.room), where.body, there, out=views, rng=rng)
         return views
 
 
 @lru_cache(maxsize=4)
-def _parsed(room: str) -> Arena:
+def parsed(room: str) -> Arena:
     """Work out a room once for all that is painted of it."""
     return Arena.parse(room)

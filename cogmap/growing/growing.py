@@ -6,10 +6,14 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from arena import Arena, Brownian, Camera, Disc, Nose
 from arena.atomic import check_absent
+from arena.bodies.disc import Disc
 from arena.eye.base import AnyEye
+from arena.eye.camera import Camera
 from arena.motions.base import Motion
+from arena.motions.brownian import Brownian
+from arena.rooms.arena import Arena
+from arena.smell.nose import Nose
 from cogmap.atomic import user_path
 from cogmap.crew import Wording, on_cluster, on_this_machine
 from cogmap.errors import CogmapError
@@ -95,6 +99,8 @@ def grow(
         raise CogmapError("workers are counted on this machine and a scheduler has its own; give one of them")
     if views < explorers:
         raise CogmapError(f"there are {views} views for {explorers} explorers; give each one at least")
+    if not isinstance(body, Disc):
+        raise CogmapError(f"the body is of kind {type(body).__name__}; many explorers are discs")
     charts = usual_charts(views) if charts is None else checked_count("charts", charts)
     if views < charts:
         raise CogmapError(

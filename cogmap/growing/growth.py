@@ -121,7 +121,7 @@ class Growth:
         self.cmap.partial_fit(self.expedition.views_from(poses, learnt)[:], odours)
 
     def _learn_together(self, stage: Stage[Any], merged: int) -> None:
-        """Learn a stage of sums from all views: forks of the map learn shares, and are merged in their order."""
+        """Learn a stage of sums from all views: forks learn shares, and are merged in the order of these."""
         if merged == len(self.shares):
             return
         needed, waiting = _needed(stage), dict[int, dict[str, np.ndarray]]()
@@ -163,7 +163,9 @@ class Growth:
             self._ensure(CODES)
         with self._timed(name):
             if name == WAYS:
-                self._remember(name, (Task(k, walk_share, (self.expedition, self.shares[k])) for k in lacking))
+                self._remember(
+                    name, (Task(k, walk_share, (self.expedition, self.shares[k])) for k in lacking)
+                )
                 return
             with self.checkpoint.lent(name, lambda: self.cmap) as path:
                 self._remember(name, (self._look(name, number, path) for number in lacking))

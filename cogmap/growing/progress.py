@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import TracebackType
+from typing import Self
 
 from tqdm import tqdm
 
@@ -30,7 +31,7 @@ class Progress:
         shown = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}, {remaining} left"
         self._bar = tqdm(total=0.0, disable=disable, bar_format=shown, smoothing=0.1)
 
-    def __enter__(self) -> Progress:
+    def __enter__(self) -> Self:
         return self
 
     def __exit__(

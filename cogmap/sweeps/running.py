@@ -4,7 +4,6 @@ import json
 import threading
 import warnings
 from pathlib import Path
-from typing import Any
 
 from cogmap.crew import Wording
 from cogmap.errors import CogmapError, UntrustedMapWarning
