@@ -122,7 +122,7 @@ class Checkpoint:
         try:
             found = json.loads(self._plan())
             sealed = found.pop("digest", None) == digest(found)
-        except (OSError, ValueError, AttributeError):
+        except (OSError, ValueError, AttributeError, TypeError):
             sealed = False
         if not sealed:
             raise CogmapError(f"{self.folder / _PLAN} is damaged; remove {self.folder} and start again")

@@ -106,8 +106,8 @@ class Expedition:
                 f"{len(walk.times)}; choose another number of views or explorers, or another motion"
             )
         poses = self.body.camera_poses(walk.poses)
-        concentrations = room.odours.concentration(poses[:, :2])
-        return Way(walk.poses, log_odours(self.nose.smell(concentrations, walk.times, nose_rng)))
+        smelt = self.nose.smell(room.odours.concentration(poses[:, :2]), walk.times, nose_rng)
+        return Way(walk.poses, log_odours(smelt) if smelt.shape[1] else smelt)
 
     def views_on(self, explorer: int, poses: Float[np.ndarray, "views axes"]) -> Painted:
         """Give what an explorer sees on its way, painted when it is asked for."""
@@ -122,17 +122,13 @@ class Expedition:
         parts = {"motion": self.motion, "camera": self.camera, "nose": self.nose, "body": self.body}
         told = {name: {"kind": type(part).__name__, **part.model_dump()} for name, part in parts.items()}
         counts = {"explorers": self.explorers, "views": self.views, "seed": self.seed}
-        described: dict[str, Any] = json.loads(
-            json.dumps({"arena": self.room, **told, **counts}, default=str)
-        )
+        text = json.dumps({"arena": self.room, **told, **counts}, default=str)
+        described: dict[str, Any] = json.loads(text)
         return described
 
-    def _seeds(self, *key: int) -> np.random.SeedSequence:
+    def chance(self, *key: int) -> np.random.SeedSequence:
+        """Give the seeds that belong to a key."""
         return np.random.SeedSequence(self.seed, spawn_key=key)
-
-    @property
-    def _room(self) -> Arena:
-        return _parsed(self.room)
 
 
 class Painted:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from arena.atomic import check_absent
+from arena.bodies.base import Body
 from arena.bodies.disc import Disc
 from arena.eye.base import AnyEye
 from arena.eye.camera import Camera
@@ -44,7 +46,7 @@ def grow(
     motion: Motion = Brownian(),
     camera: AnyEye = Camera.panoramic(),
     nose: Nose = Nose(),
-    body: Disc = Disc(),
+    body: Body = Disc(),
     seed: Whole = 0,
     workers: Whole | None = None,
     scheduler: str | None = None,
@@ -128,7 +130,7 @@ def grow(
     with checkpoint.opened({**expedition.described(), "map": settings}):
         if path.exists():  # killed when all was done
             return CognitiveMap.load(path)
-        with Progress(disable=not progress) as bar:
+        with closing(Progress(disable=not progress)) as bar:
             grown = Growth(expedition, checkpoint, crew, bar).run(blank)
         grown.save(path)
     return grown

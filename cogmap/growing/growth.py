@@ -71,13 +71,14 @@ class Growth:
         """Bring a map that has learnt nothing, or what was put down of it, through all stages."""
         begun = self.checkpoint.load()
         self.cmap, place = begun or (blank, None)
+        self.bar.expect(WAYS, self.expedition.views)
         self._ensure(WAYS)
         if place is None:
             # views tell the eye, and with it the network
-            self._learn_views(min(PIECE, self.cmap.epoch), 0)
+            self._learn_views(min(BATCH, self.cmap.epoch), 0)
             place = Place(self._network.stage.name, 0)
         stage, merged = self._named(place.stage), place.merged
-        self._expect(stage)
+        self._expect(stage, merged)
         while True:
             if merged < len(self.shares):
                 self._ensure(_needed(stage))
@@ -209,14 +210,24 @@ class Growth:
     def _named(self, name: str) -> Stage[Any]:
         return next(stage for stage in self._network.stages if stage.name == name)
 
-    def _expect(self, stage: Stage[Any]) -> None:
-        """Tell the bar what is left."""
-        network, views = self._network, self.expedition.views
-        left = network.stages[network.stages.index(stage) :]
+    def _expect(self, stage: Stage[Any], merged: int) -> None:
+        """Tell the bar what is left from a stage on."""
+        network = self._network
+        first = self.shares[merged].rows.start if merged < len(self.shares) else self.expedition.views
+        learnt = first if stage.sums else int(network.views_seen) - network.begins(stage.name)
+        left = [each for each in network.stages[network.stages.index(stage) :] if self._lasts(each)]
         for each in left:
-            self.bar.expect(each.name, views if each.sums else each.epochs * network.epoch)
-        for name in {_needed(each) for each in left} | {CODES}:
-            self.bar.expect(name, views)
+            self.bar.expect(each.name, self._lasts(each) - learnt * (each == stage))
+        needed = {_needed(each) for each in left}
+        for name in (CODES, RECALLED):
+            if name in needed or (name == CODES and RECALLED in needed):
+                self.bar.expect(name, self.expedition.views)
+
+    def _lasts(self, stage: Stage[Any]) -> int:
+        """Count the views that a stage is shown."""
+        if stage.sums:
+            return self.expedition.views
+        return 0 if stage == self._network.stages[-1] else stage.epochs * self._network.epoch
 
     @contextmanager
     def _timed(self, name: str) -> Iterator[None]:

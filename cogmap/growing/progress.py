@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from types import TracebackType
-from typing import Self
-
 from tqdm import tqdm
 
 COSTS = {
@@ -28,15 +25,11 @@ class Progress:
     """A bar on stderr with the time left, in what all that is left costs."""
 
     def __init__(self, *, disable: bool) -> None:
-        shown = "{desc}: {percentage:3.0f}%|{bar}| {elapsed}, {remaining} left"
+        shown = "{desc}{percentage:3.0f}%|{bar}| {elapsed}, {remaining} left"
         self._bar = tqdm(total=0.0, disable=disable, bar_format=shown, smoothing=0.1)
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def close(self) -> None:
+        """Leave the bar as it is."""
         self._bar.close()
 
     def expect(self, name: str, views: int) -> None:
