@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 from filelock import FileLock
 
-from cogmap import CognitiveMap, CogmapError
+from cogmap import CogmapError, CognitiveMap
 from cogmap.growing.checkpoint import Checkpoint, Place
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import torch
 
-from arena import Arm, Arena
-from cogmap import CognitiveMap, CogmapError, UnlikeArithmeticWarning
+from arena import Arena, Arm
+from cogmap import CogmapError, CognitiveMap, UnlikeArithmeticWarning
 from cogmap.growing import growing, growth
 from cogmap.growing.checkpoint import Checkpoint, Place
 from cogmap.growing.work import Outcome, do
@@ -52,7 +52,13 @@ def test_the_map_is_that_of_the_usual_means_but_for_rounding(tmp_path: Path) -> 
             fork.partial_fit(views[k], np.exp(ways[k].log_odours), jump=True)
             usual.merge(fork)
     mine, its = cmap.state_dict(), usual.state_dict()
-    for name in ("code.weight", "charts.centres", "olfaction.gram", "place.centres", "place.afferents.activity"):
+    for name in (
+        "code.weight",
+        "charts.centres",
+        "olfaction.gram",
+        "place.centres",
+        "place.afferents.activity",
+    ):
         torch.testing.assert_close(mine[name], its[name], rtol=2e-3, atol=2e-3)
 
 
