@@ -48,7 +48,7 @@ def _grow(
     explorers, views
         How many, and how many views of all of them together.
     charts
-        Of the map; a third of the views by default, 12,000 at most.
+        Of the map; a third of the views by default, 6,000 at most.
     epoch
         Views of an epoch in the stages that one process learns; 50,000 by default, or all if fewer.
     scheduler

@@ -29,7 +29,7 @@ from cogmap.map.cognitive_map import CognitiveMap
 
 EPOCH = 50_000
 """Views of an epoch in the stages that one process learns, unless there are fewer."""
-MOST_CHARTS = 12_000
+MOST_CHARTS = 6_000
 """Charts of a map of a million views, unless told."""
 CREW = Wording("a share of the explorers", KEPT)
 """How a crew speaks of what it does."""

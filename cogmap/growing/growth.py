@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -126,7 +126,7 @@ class Growth:
         if merged == len(self.shares):
             return
         needed, waiting = _needed(stage), dict[int, dict[str, np.ndarray]]()
-        with self.checkpoint.lent(stage.name, partial(self._fork, stage, merged)) as path:
+        with self._lent(stage.name, partial(self._fork, stage, merged)) as path:
             fork = CognitiveMap.load(path)
             sums = fork.state_dict()
             tasks = (self._lesson(number, needed, path) for number in range(merged, len(self.shares)))
@@ -139,6 +139,10 @@ class Growth:
                     merged += 1
                     self._save(Place(stage.name, merged), every=EVERY)
             self._save(Place(stage.name, merged))
+
+    def _lent(self, name: str, make: Callable[[], CognitiveMap]) -> AbstractContextManager[Path]:
+        """Put a map down for those who help; where charts are added, they do it again with another."""
+        return self.checkpoint.lent(f"{name} on {len(self._network.charts)} charts", make)
 
     def _fork(self, stage: Stage[Any], merged: int) -> CognitiveMap:
         if merged:
@@ -168,7 +172,7 @@ class Growth:
                     name, (Task(k, walk_share, (self.expedition, self.shares[k])) for k in lacking)
                 )
                 return
-            with self.checkpoint.lent(name, lambda: self.cmap) as path:
+            with self._lent(name, lambda: self.cmap) as path:
                 self._remember(name, (self._look(name, number, path) for number in lacking))
         if name == RECALLED:
             self.memory.forget(CODES)

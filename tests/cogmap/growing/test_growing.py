@@ -125,6 +125,13 @@ def test_another_seed_and_other_walks_give_another_map(undisturbed: Path, tmp_pa
     assert weights(tmp_path / "map") != weights(undisturbed)
 
 
+def test_charts_are_added_until_they_agree_and_learn_again(tmp_path: Path) -> None:
+    cmap = grown(tmp_path / "map", views=400, charts=30, epoch=400, most_charts=60)
+    state = cmap.state_dict()
+    assert len(state["charts.centres"]) == 60
+    assert float(state["place.afferents.activity"].sum()) == pytest.approx(400, rel=1e-5)
+
+
 def test_sight_alone_is_learnt_without_cells(tmp_path: Path) -> None:
     room = Arena.load("furnished").model_copy(update={"sources": ()})
     cmap = growing.grow(room, tmp_path / "map", **{**SMALL, "views": 300, "charts": 30, "epoch": 300})
