@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 from pathlib import Path
@@ -71,17 +71,16 @@ class Growth:
         """Bring a map that has learnt nothing, or what was put down of it, through all stages."""
         begun = self.checkpoint.load()
         self.cmap, place = begun or (blank, None)
-        self.bar.expect(WAYS, self.expedition.views)
-        self._ensure(WAYS)
         if place is None:
+            self.bar.expect(WAYS, self.expedition.views)
+            self._ensure(WAYS)
             # views tell the eye, and with it the network
             self._learn_views(min(BATCH, self.cmap.epoch), 0)
             place = Place(self._network.stage.name, 0)
         stage, merged = self._named(place.stage), place.merged
         self._expect(stage, merged)
         while True:
-            if merged < len(self.shares):
-                self._ensure(_needed(stage))
+            self._ensure(_needed(stage), merged if stage.sums else 0)
             with self._timed(stage.name):
                 if stage.sums:
                     self._learn_together(stage, merged)
@@ -159,23 +158,25 @@ class Growth:
         given = self.memory.take(needed, rows), self.memory.take(WAYS, rows)[1], walks, path
         return Task(number, learn_share, given)
 
-    def _ensure(self, name: str) -> None:
-        """Have something remembered of all views; after a kill it is made again."""
-        lacking = self.memory.lacks(name)
-        if not lacking:
-            return
-        if name == RECALLED:
-            self._ensure(CODES)
-        with self._timed(name):
-            if name == WAYS:
-                self._remember(
-                    name, (Task(k, walk_share, (self.expedition, self.shares[k])) for k in lacking)
-                )
-                return
-            with self._lent(name, lambda: self.cmap) as path:
-                self._remember(name, (self._look(name, number, path) for number in lacking))
+    def _ensure(self, name: str, first: int = 0) -> None:
+        """Have something remembered of shares from the first on; after a kill it is made again."""
+        self._make(name, [number for number in self.memory.lacks(name) if number >= first])
         if name == RECALLED:
             self.memory.forget(CODES)
+
+    def _make(self, name: str, shares: Sequence[int]) -> None:
+        """Make what is remembered of some shares, and first what it is made of."""
+        if not shares:
+            return
+        if name == WAYS:
+            tasks = (Task(number, walk_share, (self.expedition, self.shares[number])) for number in shares)
+            with self._timed(name):
+                self._remember(name, tasks)
+            return
+        source = WAYS if name == CODES else CODES
+        self._make(source, [number for number in self.memory.lacks(source) if number in shares])
+        with self._timed(name), self._lent(name, lambda: self.cmap) as path:
+            self._remember(name, (self._look(name, number, path) for number in shares))
 
     def _look(self, name: str, number: int, path: Path) -> Task:
         share = self.shares[number]
@@ -223,9 +224,12 @@ class Growth:
         for each in left:
             self.bar.expect(each.name, self._lasts(each) - learnt * (each == stage))
         needed = {_needed(each) for each in left}
-        for name in (CODES, RECALLED):
-            if name in needed or (name == CODES and RECALLED in needed):
-                self.bar.expect(name, self.expedition.views)
+        needed |= {WAYS, CODES} if RECALLED in needed else {WAYS}
+        # in the last stage nothing is made again of what is merged
+        made = learnt if stage.sums and len(left) == 1 else 0
+        for name in needed:
+            if self.memory.lacks(name):
+                self.bar.expect(name, self.expedition.views - made)
 
     def _lasts(self, stage: Stage[Any]) -> int:
         """Count the views that a stage is shown."""

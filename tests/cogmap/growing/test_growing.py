@@ -101,6 +101,32 @@ def test_cut_off_at_every_moment_it_ends_with_the_same_bytes(
     assert not Checkpoint.beside(tmp_path / "map").folder.exists()
 
 
+def test_what_is_merged_is_not_made_again_at_the_end(
+    undisturbed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(growth, "EVERY", 0.0)
+    save, done = Checkpoint.save, list[tuple[str, int]]()
+
+    def save_and_die(checkpoint: Checkpoint, cmap: CognitiveMap, place: Place) -> None:
+        save(checkpoint, cmap, place)
+        if place == Place("afferents", 3):
+            raise Killed
+
+    def noted(_: Any, tasks: Any, **__: Any) -> Any:
+        for task in tasks:
+            done.append((task.work.__name__, task.number))
+            yield do(task)
+
+    with monkeypatch.context() as patch, pytest.raises(Killed):
+        patch.setattr(Checkpoint, "save", save_and_die)
+        grown(tmp_path / "map")
+    monkeypatch.setattr(growing, "on_this_machine", noted)
+    grown(tmp_path / "map")
+    works = ("walk_share", "code_share", "recall_share", "learn_share")
+    assert done == [(work, number) for work in works for number in (3, 4)]
+    assert weights(tmp_path / "map") == weights(undisturbed)
+
+
 def test_cut_off_when_all_is_done_it_is_put_away(
     undisturbed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
