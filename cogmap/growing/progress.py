@@ -34,7 +34,7 @@ class Progress:
 
     def expect(self, name: str, views: int) -> None:
         """Count on so many views more in a stage."""
-        self._bar.total += COSTS.get(name, USUAL) * views
+        self._bar.total = (self._bar.total or 0.0) + COSTS.get(name, USUAL) * views
 
     def update(self, name: str, views: int) -> None:
         """Say that so many views more have passed."""
