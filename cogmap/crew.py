@@ -42,13 +42,14 @@ def on_this_machine(
     CogmapError
         When a process was killed, and what the work raises.
     """
-    # Processes without work end after some seconds, as all do whose master was killed. Arrays are handed over
-    # as they are: those that joblib maps from files cannot be written, of which torch complains.
+    # Processes without work end after half a minute, as all do whose master was killed; sooner, joblib
+    # complains on a machine that is busy. Arrays are handed over as they are: those that it maps from files
+    # cannot be written, of which torch complains.
     pool = Parallel(
         workers or -1,
         batch_size=1,
         return_as="generator_unordered",
-        idle_worker_timeout=10.0,
+        idle_worker_timeout=30.0,
         max_nbytes=None,
     )
     try:

@@ -9,7 +9,7 @@ from cogmap import CognitiveMap, grow
 from cogmap.growing.work import Outcome, Task, do
 
 SMALL: dict[str, Any] = {
-    "explorers": 5, "views": 1203, "charts": 80, "epoch": 600, "components": 10, "place_cells": 12,
+    "explorers": 5, "views": 803, "charts": 60, "epoch": 400, "components": 10, "place_cells": 12,
     "heading_cells": 8, "camera": Camera.panoramic(90, 15), "workers": 1,
 }  # fmt: skip
 """A map of few charts, which tells nobody where it is."""
