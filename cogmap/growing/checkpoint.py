@@ -76,6 +76,10 @@ class Checkpoint:
                 with atomic_write(plan) as fresh:
                     fresh.write_text(json.dumps({**wanted, "digest": digest(wanted)}, indent=1), "utf-8")
             yield
+            # the plan last: without it nobody could tell whose the rest is
+            for item in self.folder.iterdir():
+                if item.is_dir():
+                    shutil.rmtree(item, ignore_errors=True)
             shutil.rmtree(self.folder, ignore_errors=True)
 
     def save(self, cmap: CognitiveMap, place: Place) -> None:
@@ -110,7 +114,11 @@ class Checkpoint:
         if not path.exists():
             make().save(path)
         yield path
-        shutil.rmtree(path, ignore_errors=True)
+        # under another name, as it would not be whole on the way
+        gone = self.folder / "gone"
+        shutil.rmtree(gone, ignore_errors=True)
+        path.rename(gone)
+        shutil.rmtree(gone, ignore_errors=True)
 
     def _plan(self) -> str:
         return (self.folder / _PLAN).read_text(encoding="utf-8")

@@ -75,7 +75,7 @@ class Growth:
             self.bar.expect(WAYS, self.expedition.views)
             self._ensure(WAYS)
             # views tell the eye, and with it the network
-            self._learn_views(min(BATCH, self.cmap.epoch), 0)
+            self._learn_views(None, min(BATCH, self.cmap.epoch), 0)
             place = Place(self._network.stage.name, 0)
         stage, merged = self._named(place.stage), place.merged
         self._expect(stage, merged)
@@ -102,7 +102,7 @@ class Growth:
         while (learnt := int(network.views_seen) - begins) < whole:
             count = min(PIECE, whole - learnt)
             if needed == WAYS:
-                self._learn_views(count, learnt)
+                self._learn_views(stage, count, learnt)
             else:
                 rows = self._picked(stage, learnt, count)
                 seen = seen_of(self.memory.take(needed, rows))
@@ -113,9 +113,8 @@ class Growth:
             self.bar.update(stage.name, count)
             self._save(Place(stage.name, 0), every=EVERY)
 
-    def _learn_views(self, count: int, learnt: int) -> None:
-        """Learn from views themselves."""
-        stage = self._network.stage if hasattr(self.cmap, "_network") else None
+    def _learn_views(self, stage: Stage[Any] | None, count: int, learnt: int) -> None:
+        """Learn from views themselves; before the first there is no stage yet."""
         poses, smells = self.memory.take(WAYS, self._picked(stage, learnt, count))
         odours = np.exp(smells) if smells.shape[1] else None
         self.cmap.partial_fit(self.expedition.views_from(poses, learnt)[:], odours)

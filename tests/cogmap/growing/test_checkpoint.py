@@ -1,3 +1,4 @@
+import shutil
 from pathlib import Path
 
 import pytest
@@ -36,6 +37,31 @@ def test_a_map_that_is_lent_is_put_down_once(undisturbed: Path, tmp_path: Path) 
         raise KeyboardInterrupt
     with checkpoint.lent("olfaction", lambda: pytest.fail("it is there")) as path:
         assert path.exists()
+
+
+def test_killed_while_it_is_put_away_nothing_stands_in_the_way(
+    undisturbed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    checkpoint, cmap = begun(tmp_path), CognitiveMap.load(undisturbed)
+
+    def torn(folder: Path, **_: object) -> None:
+        for file in folder.rglob("map.json"):
+            file.unlink()
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(shutil, "rmtree", torn)
+        with checkpoint.lent("olfaction", lambda: cmap):
+            pass
+    with checkpoint.lent("olfaction", lambda: cmap) as path:
+        assert CognitiveMap.load(path).charts == cmap.charts
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(shutil, "rmtree", torn)
+        with checkpoint.opened({"seed": 3}):
+            checkpoint.save(cmap, Place("charts", 0))
+    with checkpoint.opened({"seed": 3}):
+        pass
+    assert not checkpoint.folder.exists()
 
 
 def test_one_command_at_a_time(tmp_path: Path) -> None:
