@@ -5,18 +5,18 @@ from __future__ import annotations
 from tqdm import tqdm
 
 COSTS = {
-    "ways": 40.0,
-    "code": 320.0,
-    "codes": 240.0,
-    "charts": 200.0,
-    "olfaction": 100.0,
-    "recalled": 80.0,
-    "cells": 30.0,
-    "metric_map": 60.0,
-    "corrected_metric_map": 60.0,
-    "afferents": 60.0,
+    "ways": 110.0,
+    "code": 810.0,
+    "codes": 410.0,
+    "charts": 300.0,
+    "olfaction": 190.0,
+    "recalled": 190.0,
+    "cells": 70.0,
+    "metric_map": 105.0,
+    "corrected_metric_map": 80.0,
+    "afferents": 35.0,
 }
-"""What a view costs, µs on two cores, as measured in `docs/many_explorers.md`: they tell the time left."""
+"""What a view costs beside others, as measured in `docs/many_explorers.md`: they tell the time left."""
 USUAL = 100.0
 """What it costs in a stage that is not among them."""
 
