@@ -45,7 +45,7 @@ def start(folder: Path, *words: object) -> Forked:
 
 
 def wait_for(there: Callable[[], Any], process: Forked) -> None:
-    until = time.monotonic() + 120
+    until = time.monotonic() + 500
     while not there():
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < until
@@ -66,7 +66,7 @@ def test_two_processes_give_the_same_bytes_though_the_command_is_killed(
     process.communicate()
     assert process.poll() == -signal.SIGKILL
     process = start(tmp_path, "--workers", 2)
-    out, err = process.communicate(timeout=240)
+    out, err = process.communicate(timeout=500)
     assert process.poll() == 0, err
     assert json.loads(out)["map"] == str(tmp_path / "map")
     assert weights(tmp_path / "map") == weights(undisturbed)
@@ -79,7 +79,7 @@ def test_dask_workers_give_the_same_bytes_though_one_is_killed(undisturbed: Path
         wait_for((tmp_path / "map.growing" / "now").exists, process)
         wait_for(lambda: lent(tmp_path), process)
         processes[1].kill()
-        _, err = process.communicate(timeout=240)
+        _, err = process.communicate(timeout=500)
         assert processes[1].poll() == -signal.SIGKILL
     assert process.poll() == 0, err
     assert weights(tmp_path / "map") == weights(undisturbed)
