@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     )
     from cogmap.evaluation.scoring import score
     from cogmap.features import BagOfWords
+    from cogmap.growing import grow
     from cogmap.imagination import Imagination
     from cogmap.map.activity import Activity
     from cogmap.map.cognitive_map import CognitiveMap
@@ -52,6 +53,7 @@ __all__ = [
     "evaluation",
     "features",
     "graph",
+    "grow",
     "navigation",
     "plots",
     "score",
@@ -73,6 +75,7 @@ _HOMES = {
     ),
     "evaluation.scoring": ("score",),
     "features": ("BagOfWords",),
+    "growing": ("grow",),
     "imagination": ("Imagination",),
     "map.activity": ("Activity",),
     "map.cognitive_map": ("CognitiveMap",),

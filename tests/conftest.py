@@ -11,10 +11,11 @@ import pytest
 from tests.guards import described, too_near
 
 LONGEST = (
-    "test_running", "test_merging", "atlas/test_metric_map", "shape/test_homology", "test_isomap",
+    "test_running", "growing/test_processes", "test_merging", "atlas/test_metric_map", "shape/test_homology",
+    "test_isomap",
     "test_notebooks", "test_portable", "test_registry", "test_readme", "test_directionality",
     "test_topology_of_maps", "test_development_and_lesions", "test_cognitive_map", "test_cli",
-    "test_exploration", "test_fusion",
+    "test_exploration", "test_fusion", "growing/test_growing",
 )  # fmt: skip
 """Files that are begun first, the longest of them, so that no worker waits for another at the end.
 

@@ -19,6 +19,7 @@ _COMMANDS = {
     "experiment": "results:experiment_command",
     "explore": "rooms:_explore",
     "export": "maps:_export",
+    "grow": "growing:_grow",
     "import": "pictures:_import",
     "learn": "maps:_learn",
     "reach": "acting:_reach",

@@ -8,6 +8,7 @@ import pandas as pd
 from tqdm import tqdm
 
 from cogmap.atomic import user_path
+from cogmap.crew import on_cluster, on_this_machine
 from cogmap.digests import SUMS, sums
 from cogmap.errors import CogmapError, UnlikeArithmeticWarning
 from cogmap.experiments.provenance import PROVENANCE, write_provenance
@@ -17,7 +18,7 @@ from cogmap.plots.sweep import plot_trend, statistics_of
 from cogmap.sweeps.ledger import Ledger, Record, disk_errors
 from cogmap.sweeps.plan import Plan
 from cogmap.sweeps.points import points_of
-from cogmap.sweeps.running import do, on_cluster, on_this_machine
+from cogmap.sweeps.running import WORDING, do
 from cogmap.sweeps.table import table_of
 from cogmap.tables import write_table
 
@@ -84,9 +85,9 @@ def sweep(
         with bar:
             if left:
                 doing = (
-                    on_this_machine(work, left, workers)
+                    on_this_machine(work, left, workers, WORDING)
                     if scheduler is None
-                    else on_cluster(work, left, scheduler)
+                    else on_cluster(work, left, scheduler, WORDING)
                 )
                 for _ in doing:
                     bar.update()

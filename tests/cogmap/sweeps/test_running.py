@@ -6,20 +6,18 @@ import resource
 import signal
 import time
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import psutil
 import pytest
 
+from tests import clusters
 from tests.forked import Forked, prepare
 
 ROOT = Path(__file__).parents[3]
 NEEDED = (
-    "tests.cogmap.sweeps.laboratory", "cogmap.commands.results", "distributed.cli.dask_scheduler",
-    "distributed.cli.dask_worker",
+    "tests.cogmap.sweeps.laboratory", "cogmap.commands.results", *clusters.NEEDED,
 )  # fmt: skip
 THREADS = {"OMP_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
 SWEEP = """
@@ -123,33 +121,9 @@ def test_killed_at_any_moment_the_same_command_goes_on(
     assert not (lab.out / "walks").exists()
 
 
-@contextmanager
-def cluster(lab: Laboratory, workers: int) -> Iterator[tuple[str, list[Forked]]]:
-    folder = lab.file.parent
-    file = folder / "scheduler.json"
-    options = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", file]
-    processes = [
-        Forked("distributed.cli.dask_scheduler:main", options, lab.environment, folder / "scheduler")
-    ]
-    try:
-        while not (file.exists() and file.stat().st_size) and processes[0].poll() is None:
-            time.sleep(0.1)
-        address = json.loads(file.read_text(encoding="utf-8"))["address"]
-        words = [address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--local-directory", folder]
-        processes += [
-            Forked("distributed.cli.dask_worker:main", words, lab.environment, folder / f"worker{number}")
-            for number in range(workers)
-        ]
-        yield address, processes
-    finally:
-        for process in processes:
-            process.kill()
-            process.communicate()
-
-
 def test_two_dask_workers_give_the_same_table(undisturbed: Laboratory, tmp_path: Path) -> None:
     lab = laboratory(tmp_path / "cluster")
-    with cluster(lab, workers=2) as (address, _):
+    with clusters.cluster(lab.file.parent, lab.environment, workers=2) as (address, _):
         status, out, err = lab.run("--scheduler", address)
     assert status == 0, err
     assert json.loads(out)["rows"] == POINTS
@@ -160,7 +134,7 @@ def test_two_dask_workers_give_the_same_table(undisturbed: Laboratory, tmp_path:
 def test_a_scheduler_that_dies_is_one_sentence_and_the_rest_is_done_here(tmp_path: Path) -> None:
     text = 'experiment = "cheap"\n[grid]\n"nose.noise" = [0, 1]\n"map.charts" = [1, 2, 3, 4, 5, 6]\n'
     lab = laboratory(tmp_path / "dying", text, seconds=1.0)
-    with cluster(lab, workers=1) as (address, processes):
+    with clusters.cluster(lab.file.parent, lab.environment, workers=1) as (address, processes):
         process = lab.start("--scheduler", address)
         while not lab.finished() and process.poll() is None:
             time.sleep(0.05)

@@ -11,11 +11,10 @@ import pandas as pd
 import pytest
 from filelock import FileLock
 
-from cogmap import CogmapError, Plan, UnlikeArithmeticWarning, cli, sweep
+from cogmap import CogmapError, Plan, UnlikeArithmeticWarning, cli, crew, sweep
 from cogmap.experiments.conditions import Conditions
 from cogmap.experiments.registry import Experiment, experiments
 from cogmap.portable import arithmetic
-from cogmap.sweeps import running
 from cogmap.sweeps.ledger import is_full_disk, sealed
 from cogmap.sweeps.points import Point
 
@@ -200,7 +199,7 @@ def test_a_folder_that_cannot_be_written_is_said(tmp_path: Path) -> None:
 
 
 def test_a_scheduler_that_is_not_there_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(running, "PATIENCE", 0.5)
+    monkeypatch.setattr(crew, "PATIENCE", 0.5)
     for address in ("tcp://127.0.0.1:9", "nonsense"):
         with pytest.raises(CogmapError, match=f"no Dask scheduler answers at {address}"):
             sweep(PLAN, tmp_path, scheduler=address)
@@ -249,7 +248,7 @@ def test_a_stranger_experiment_reaches_the_catalogue_of_a_worker(
 ) -> None:
     chosen: Experiment = experiments()["toy"]
 
-    def forgetful(work: Callable[[Point], None], points: list[Point], workers: int | None) -> Any:
+    def forgetful(work: Callable[[Point], None], points: list[Point], workers: int | None, _: Any) -> Any:
         assert workers == 1
         del experiments()["toy"]
         for point in points:
