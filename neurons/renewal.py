@@ -31,8 +31,8 @@ class RenewalStage(StripStage):
     """The last stage of a map that is to follow a room that changes; it never ends.
 
     Sums of olfaction and afferents decay to 1/e in `time_constant` views, while charts move to what they
-    win. As often the charts agree anew, on a compass that is turned to the one before, and places are laid out
-    from the last of the walk; in between all is told as it was.
+    win. As often the charts agree anew, on a compass that is turned to the one before, and places are laid
+    out from the last of the walk; in between all is told as it was.
 
     Parameters
     ----------

@@ -199,8 +199,8 @@ class Rooms(nn.Module):
     ) -> None:
         """Let the room that a batch of a walk is in learn from it; a new one begins where it is in none.
 
-        Views that are of no known room are of the one that is still growing, if there is one. `jump` says that
-        they do not follow those of the last call.
+        Views that are of no known room are of the one that is still growing, if there is one. `jump` says
+        that they do not follow those of the last call.
         """
         self.settle()
         room = self._enter(strips, log_odours, jump=jump)

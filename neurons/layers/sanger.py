@@ -79,13 +79,16 @@ class Sanger(nn.Module):
     def off(
         self, x: Float[Tensor, "views features"], y: Float[Tensor, "views components"]
     ) -> Float[Tensor, "views"]:
-        """Square of what the code does not tell of each view: its distance from the span of the components."""
-        return ((x - self.mean).square().sum(dim=1) - self.orthonormal(y).square().sum(dim=1)).clamp(min=0)
+        """Square of what the code leaves of each view: its distance from the span of the components."""
+        energy, told = (x - self.mean).square().sum(dim=1), self.orthonormal(y).square().sum(dim=1)
+        return (energy - told).clamp(min=0)
 
     def orthonormal(self, y: Float[Tensor, "views components"]) -> Float[Tensor, "views components"]:
         """Give codes on orthonormal components of which the first n span what the first n of the code do."""
         # W = L Q with Q orthonormal, so that W Wᵀ = L Lᵀ, and y = W (x − mean) is L⁻¹ y on the rows of Q
         overlap = (self.weight @ self.weight.T).double()
+        # rows that have hardly parted yet depend on each other; what they tell apart is rounding
+        overlap.diagonal().add_(1e-4)
         factor = torch.linalg.cholesky(overlap).to(y)
         return torch.linalg.solve_triangular(factor, y.T, upper=False).T
 

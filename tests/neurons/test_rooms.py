@@ -160,9 +160,7 @@ def test_forks_are_merged_room_by_room(two: tuple[Rooms, Rooms]) -> None:
     before = [network.place.afferents.activity.clone() for network in both]
     both.merge(away)
     for network, sums, other in zip(both, before, away, strict=True):
-        torch.testing.assert_close(
-            network.place.afferents.activity, sums + other.place.afferents.activity
-        )
+        torch.testing.assert_close(network.place.afferents.activity, sums + other.place.afferents.activity)
     with pytest.raises(NeuronsError, match="know 2 and 1 rooms"):
         both.merge(two[0])
 

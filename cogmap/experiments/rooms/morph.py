@@ -41,10 +41,10 @@ def morph(conditions: Conditions) -> Result:
     ten steps, perceived by sight alone, with nothing learnt from it; three seeds give the spread of each
     curve. `place` is how much better the population vectors of place cells fit the map of the second room
     than that of the first, from −1 to 1 as their correlations differ; `heading` the same of the shares of
-    views whose heading is right by less than 15° in the compass of either. `room` is the share of views that are taken for
-    the second room, `confidence` how sure the map is of either, and `nowhere` the share of those taken for
-    neither. A width is that of the logistic that fits a curve best, from a tenth to nine tenths of the switch,
-    in parts of the way from room to room (0 to 1); `switch_at_*` is its middle.
+    views whose heading is right by less than 15° in the compass of either. `room` is the share of views that are
+    taken for the second room, `confidence` how sure the map is of either, and `nowhere` the share of those
+    taken for neither. A width is that of the logistic that fits a curve best, from a tenth to nine tenths of
+    the switch, in parts of the way from room to room (0 to 1); `switch_at_*` is its middle.
 
     References
     ----------

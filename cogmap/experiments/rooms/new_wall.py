@@ -124,7 +124,7 @@ def _unrefined(cmap: CognitiveMap) -> CognitiveMap:
 
 
 def _errors(cmap: CognitiveMap, learnt: Trial, there: Trial) -> dict[str, float]:
-    """Score what a map says of the fresh walk somewhere, in frames fitted on the walk that was learnt from."""
+    """Score what a map says of a fresh walk, in frames fitted on the walk that was learnt from."""
     seen = Visit.of(cmap, learnt, there.fresh)
     figures = score(seen.test, there.fresh.require("poses"), train=(seen.train, learnt.truth.train))
     return {

@@ -44,8 +44,8 @@ def remapping(conditions: Conditions) -> Result:
     errors over those of a map of that room alone, of the worst room; `room_recognised` is the share of fresh
     views of the worst room that sight alone takes for it. Population vectors of place cells are
     correlated place by place: between rooms (`between_correlation`, the mean over pairs), within a room
-    between two fresh walks at the end, and on return (`return_correlation`, of the worst room) between a fresh
-    walk as soon as it was learnt and another when all were. The remapping index of a pair is
+    between two fresh walks at the end, and on return (`return_correlation`, of the worst room) between a
+    fresh walk as soon as it was learnt and another when all were. The remapping index of a pair is
     1 − between / within.
 
     Then one thing is changed in the first room, and the map of it walks there and may learn on: where most

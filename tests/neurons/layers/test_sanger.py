@@ -69,7 +69,7 @@ def test_same_generator_same_bits() -> None:
     assert not torch.equal(first.weight, other.weight)
 
 
-def test_a_code_that_grows_keeps_what_it_has_and_learns_what_is_left(x: Tensor, layer: Sanger) -> None:
+def test_a_code_that_grows_keeps_what_it_has_and_learns_what_is_left(layer: Sanger) -> None:
     other = data(seed=5)
     grown = layer.grown(COMPONENTS, generator=torch.Generator().manual_seed(4))
     order = torch.Generator().manual_seed(6)
