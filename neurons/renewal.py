@@ -1,6 +1,6 @@
 """Renewal: what a room has taught is forgotten slowly, and learnt from it as it is by now."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import exp
 
 import torch
@@ -55,10 +55,10 @@ class RenewalStage(StripStage):
         for name in (*OlfactionStage.sums, *AfferentStage.sums):
             circuit.get_buffer(name).mul_(exp(-count / self.time_constant))
         codes, recalled = circuit.code(batch.seen), circuit.recall(batch.seen)
-        told = {"log_odours": batch.log_odours, "progress": 1.0, "window": self.time_constant}
-        OlfactionStage().learn(circuit, Batch(codes, **told))
-        CorrectedMetricMapStage().learn(circuit, Batch(recalled, **told))
-        AfferentStage().learn(circuit, Batch(recalled, **told))
+        OlfactionStage().learn(circuit, replace(batch, seen=codes))
+        told = Batch(recalled, batch.log_odours, batch.progress, batch.window)
+        CorrectedMetricMapStage().learn(circuit, told)
+        AfferentStage().learn(circuit, told)
         few = ChartStage().winners[1]
         circuit.charts.partial_fit(codes, batch.log_odours, winners=few, window=self.time_constant)
         clock = circuit.get_buffer("renewed.views")

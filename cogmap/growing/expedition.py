@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import accumulate
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -72,7 +73,7 @@ class Expedition:
     def ends(self) -> list[int]:
         """How many views there are up to each explorer's last."""
         each, over = divmod(self.views, self.explorers)
-        return np.cumsum([each + (k < over) for k in range(self.explorers)]).tolist()
+        return list(accumulate(each + (k < over) for k in range(self.explorers)))
 
     def rows(self, explorer: int) -> slice:
         """Give the views of an explorer, among those of all."""

@@ -75,7 +75,7 @@ class Growth:
             self.bar.expect(WAYS, self.expedition.views)
             self._ensure(WAYS)
             # views tell the eye, and with it the network
-            self._learn_views(None, min(BATCH, self.cmap.epoch), 0)
+            self._learn_views(None, min(BATCH, int(self.cmap.epoch)), 0)
             place = Place(self._network.stage.name, 0)
         stage, merged = self._named(place.stage), place.merged
         self._expect(stage, merged)

@@ -106,7 +106,7 @@ def learn_share(
     return {name: state[name].numpy() for name in (*stage.sums, "views_seen")}
 
 
-def seen_of(columns: Columns) -> Tensor | Recalled:
+def seen_of(columns: Columns) -> Any:
     """Make of what is remembered what a stage sees."""
     first, *others = (torch.from_numpy(column) for column in columns)
     return Recalled(first.long(), *others) if others else first
@@ -120,7 +120,7 @@ def recall(network: Network, codes: Float[Tensor, "views components"]) -> Recall
 
 def network_of(cmap: CognitiveMap) -> Network:
     """Give the network of a map: its codes are learnt here without being made again from views."""
-    return cmap._network  # noqa: SLF001
+    return cmap._rooms[0]  # noqa: SLF001
 
 
 @lru_cache(maxsize=1)

@@ -1,6 +1,7 @@
 """Perception: what the rooms of a map say of views, of smells in the dark, and of neither."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import torch
@@ -74,5 +75,6 @@ def smelt(rooms: Rooms, log_odours: Float[Tensor, "views odorants"]) -> Activity
 
 def joined(parts: Sequence[Activity]) -> Activity:
     """Put what was told of batches of views together."""
-    names = [name for name, part in vars(parts[0]).items() if part is not None]
-    return Activity(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+    known = [name for name, part in vars(parts[0]).items() if part is not None]
+    together = {name: np.concatenate([getattr(part, name) for part in parts]) for name in known}
+    return replace(parts[0], **together)

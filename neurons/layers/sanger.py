@@ -90,7 +90,8 @@ class Sanger(nn.Module):
         # rows that have hardly parted yet depend on each other; what they tell apart is rounding
         overlap.diagonal().add_(1e-4)
         factor = torch.linalg.cholesky(overlap).to(y)
-        return torch.linalg.solve_triangular(factor, y.T, upper=False).T
+        parts: Tensor = torch.linalg.solve_triangular(factor, y.T, upper=False)
+        return parts.T
 
     def grown(self, components: int, *, generator: torch.Generator) -> "Sanger":
         """Give a code that has these components, fixed, and so many more, which have learnt nothing yet."""

@@ -123,4 +123,4 @@ def rate_change(one: cells.RateMaps, other: cells.RateMaps) -> float:
 
 def active(maps: cells.RateMaps, least: float = 1.0) -> Float[np.ndarray, "cells"]:
     """Tell which cells are active in a room: those whose map reaches so many Hz; 1 or 0."""
-    return (np.nan_to_num(maps.rates).max(axis=(1, 2)) >= least).astype(float)
+    return np.asarray(np.nan_to_num(maps.rates).max(axis=(1, 2)) >= least, float)

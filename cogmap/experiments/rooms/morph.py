@@ -33,7 +33,7 @@ NEAR_DEG = 15.0
 """A heading follows a room's compass when it is off by less."""
 
 
-@experiment(room="furnished", views=8000, takes=("nose", "motion", "camera", "body", "map"))
+@experiment(room="furnished", views=8000, takes=("nose", "motion", "body", "map"))
 def morph(conditions: Conditions) -> Result:
     """Learn two rooms that differ in all materials, then see blends of both: where place and heading switch.
 
@@ -41,10 +41,10 @@ def morph(conditions: Conditions) -> Result:
     ten steps, perceived by sight alone, with nothing learnt from it; three seeds give the spread of each
     curve. `place` is how much better the population vectors of place cells fit the map of the second room
     than that of the first, from −1 to 1 as their correlations differ; `heading` the same of the shares of
-    views whose heading is right by less than 15° in the compass of either. `room` is the share of views that are
-    taken for the second room, `confidence` how sure the map is of either, and `nowhere` the share of those
-    taken for neither. A width is that of the logistic that fits a curve best, from a tenth to nine tenths of
-    the switch, in parts of the way from room to room (0 to 1); `switch_at_*` is its middle.
+    views whose heading is right by less than 15° in the compass of either. `room` is the share of views
+    that are taken for the second room, `confidence` how sure the map is of either, and `nowhere` the share of
+    those taken for neither. A width is that of the logistic that fits a curve best, from a tenth to nine
+    tenths of the switch, in parts of the way from room to room (0 to 1); `switch_at_*` is its middle.
 
     References
     ----------
@@ -124,7 +124,7 @@ class _Pair:
         for trial in trials:
             cmap.fit(trial.walk.views, trial.walk.odours, further=True)
         walk = trials[0].fresh
-        eye = conditions.camera or Camera.panoramic()
+        eye = Camera.panoramic()
         images = tuple(np.asarray(eye.render(room, walk.require("poses"))) for room in rooms)
         one, other = (Visit.of(cmap, trial) for trial in trials)
         return cls((one, other), (images[0], images[1]), walk, cmap)
@@ -151,7 +151,7 @@ class _Pair:
                     "heading": right[1] - right[0],
                     "room": float(np.mean(there.room == 1)),
                     "nowhere": float(np.mean(there.room == -1)),
-                    "confidence": float(np.mean(there.room_confidence)),
+                    "confidence": float(np.mean(np.asarray(there.room_confidence))),
                 }
             )
         return rows
