@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import torch
@@ -76,5 +77,7 @@ def smelt(rooms: Rooms, log_odours: Float[Tensor, "views odorants"]) -> Activity
 def joined(parts: Sequence[Activity]) -> Activity:
     """Put what was told of batches of views together."""
     known = [name for name, part in vars(parts[0]).items() if part is not None]
-    together = {name: np.concatenate([getattr(part, name) for part in parts]) for name in known}
+    together: dict[str, Any] = {
+        name: np.concatenate([getattr(part, name) for part in parts]) for name in known
+    }
     return replace(parts[0], **together)

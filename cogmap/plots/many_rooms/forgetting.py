@@ -34,7 +34,7 @@ def plot_forgetting(rooms: pd.DataFrame) -> Figure:
     for axes, (column, label, scale) in zip(panels, drawn, strict=True):
         tidy(axes, x="rooms known", y=label, size=SMALL)
         axes.plot(rooms["rooms"], scale * rooms[column], "o-", color=GOOD, markersize=4, linewidth=1)
-        axes.set_ylim(0, 1.15 * scale * rooms[column].max())
+        axes.set_ylim(bottom=0)
         axes.set_xticks(rooms["rooms"])
     panels[2].plot(rooms["rooms"], rooms["recognised"], "s--", color="0.5", markersize=3, linewidth=1)
     return figure

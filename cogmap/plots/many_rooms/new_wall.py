@@ -49,7 +49,7 @@ def plot_new_wall(
     if rounds.empty:
         raise CogmapError("no rounds to draw; give a table with at least one row")
     figure = new_figure(9.4, 6.6)
-    above, below = np.ravel(figure.subfigures(2, 1, height_ratios=[4.2, 2.4]))
+    above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=[4.2, 2.4])[:, 0]
     panels = above.subplots(3, CELLS)
     differs = np.nansum(np.abs(kept.rates - before.rates), axis=(1, 2))
     shown = np.argsort(-differs)[:CELLS]

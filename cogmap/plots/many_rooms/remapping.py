@@ -36,7 +36,7 @@ def plot_remapping(rooms: Mapping[str, RateMaps], pairs: pd.DataFrame, changes: 
     if not rooms:
         raise CogmapError("no rooms to draw; give rate maps of at least one")
     figure = new_figure(1.15 * len(rooms) + 0.6, 0.95 * CELLS + 4.2)
-    above, below = np.ravel(figure.subfigures(2, 1, height_ratios=[0.95 * CELLS + 0.3, 3.9]))
+    above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=[0.95 * CELLS + 0.3, 3.9])[:, 0]
     panels = above.subplots(CELLS, len(rooms), squeeze=False)
     first = next(iter(rooms.values()))
     shown = np.argsort(-np.nanmax(first.rates, axis=(1, 2)))[:: max(1, len(first) // CELLS)][:CELLS]

@@ -55,6 +55,7 @@ def test_each_says_what_it_does_and_what_it_is_about() -> None:
         "Experiments of the paper",
         "Bodies whose mechanism nobody has described",
         "Controls of the cells",
+        "Many rooms",
         "What an explorer does with its map: imagine, expect and reach",
     }
     assert all(entry["what it does"].endswith(".") for entry in found)
