@@ -45,9 +45,8 @@ def score(
         the silent ones included. Without a compass, when every phase is NaN, no heading cell passes and the
         errors of heading are left out. Where there is a metric map also `metric_map_r2`, the share of the
         variance of (x, y) that it explains after one similarity, and `metric_map_median_m`, how far it is
-        off. Views that are taken for those of a room without a compass, or without a metric map, are left
-        out of its figures. Of a map that was refined, those of heading and metric map also as the charts
-        alone tell them, with the prefix `plain_`.
+        off. Of a map that was refined, those of heading and metric map also as the charts alone tell them,
+        with the prefix `plain_`.
 
     Raises
     ------
@@ -62,7 +61,7 @@ def score(
     if reachable is not None:
         room = checked_array("reachable", reachable, (None, 2))
     truth = GroundTruth(poses_train, poses, room)
-    place, heading = cells or (truth.measure(activity.place), truth.measure(activity.heading))
+    place, heading = cells or (CellMetrics(activity.place, truth), CellMetrics(activity.heading, truth))
     figures = {
         **truth.position(activity_train.odour, activity.odour),
         "place_cells_passing": float(place.place["passing"].mean()),
@@ -85,21 +84,18 @@ def _pose_figures(
 ) -> dict[str, float]:
     """Measure headings and positions on the metric map, as far as there are any."""
     figures, (activity_train, poses_train) = dict[str, float](), train
-    known, known_train = (np.isfinite(told.phase) for told in (activity, activity_train))
-    if known.any() and known_train.any():
-        frame = fit_heading_frame(activity_train.phase[known_train], poses_train[known_train, 2])
-        turn = heading_errors(activity.phase[known], poses[known, 2], frame)
+    if not np.isnan(activity.phase).all():
+        frame = fit_heading_frame(activity_train.phase, poses_train[:, 2])
+        turn = heading_errors(activity.phase, poses[:, 2], frame)
         turn_deg = np.rad2deg(np.abs(turn))
         figures |= {
             "heading_median_deg": float(np.median(turn_deg)),
             "heading_p95_deg": float(np.percentile(turn_deg, 95)),
             "heading_resultant": float(abs(np.mean(np.exp(1j * turn)))),
         }
-    placed, placed_train = (np.isfinite(told.position).all(axis=1) for told in (activity, activity_train))
-    if placed.any() and placed_train.any():
-        positions = poses[placed, :2]
-        frame_of_map = fit_map_frame(activity_train.position[placed_train], poses_train[placed_train, :2])
-        laid = place_map(activity.position[placed], frame_of_map)
+    if not np.isnan(activity.position).all():
+        positions = poses[:, :2]
+        laid = place_map(activity.position, fit_map_frame(activity_train.position, poses_train[:, :2]))
         figures |= {
             "metric_map_r2": float(r2_score(positions, laid, multioutput="variance_weighted")),
             "metric_map_median_m": float(np.median(np.linalg.norm(laid - positions, axis=1))),

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from importlib.resources import as_file, files
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from arena import Arena, Recording
 from cogmap import cells
@@ -79,9 +79,12 @@ class Visit:
 
     @property
     def figures(self) -> dict[str, float]:
-        """The score, of this room alone."""
-        train = self.train, self.trial.walk.require("poses")
-        return score(self.test, self.walk.require("poses"), train=train)
+        """The score; without views that are taken for those of a room which knows no headings."""
+        test, train = (
+            (seen[_headed(seen)], walk.require("poses")[_headed(seen)])
+            for seen, walk in ((self.test, self.walk), (self.train, self.trial.walk))
+        )
+        return score(*test, train=train)
 
     @property
     def maps(self) -> cells.RateMaps:
@@ -93,6 +96,11 @@ class Visit:
     def recognised(self, room: int) -> float:
         """Share of the fresh views that are said to be of this room."""
         return float(np.mean(self.test.room == room))
+
+
+def _headed(seen: Activity) -> Bool[np.ndarray, "views"]:
+    known = np.isfinite(seen.phase)
+    return known if known.any() else np.ones(len(seen), bool)
 
 
 def population_correlation(one: cells.RateMaps, other: cells.RateMaps) -> float:

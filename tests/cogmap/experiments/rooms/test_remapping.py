@@ -61,7 +61,7 @@ def test_rooms_are_told_apart_and_cells_remap(
         lambda room: {key: changed_rooms(room)[key] for key in ("nothing", "walls and smells")},
     )
     monkeypatch.setattr(remapping, "house_of", two_rooms_of_house)
-    found = run_experiment("remapping", views=900, camera=eye)
+    found = run_experiment("remapping", views=900, camera=eye, map={"place_cells": 40})
     metrics = found.metrics
     assert metrics["rooms"] == 2
     assert metrics["room_recognised"] > 0.9
