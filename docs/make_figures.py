@@ -35,12 +35,20 @@ if TYPE_CHECKING:
 OUT = Path(__file__).parent / "figures"
 SIZES = {"rotation": ("ring", 3000), "cyclic": ("cylinder", 3000), "brownian": ("torus", 8000)}
 """Experiments of the paper: the figure that is taken from each, and from how many views."""
+THUMBNAILS = {
+    "map": "figures/place_cells.png",
+    "reach": "journey.png",
+    "camera": "figures/views.png",
+    "body": "torus.png",
+    "paper": "figures/brownian_torus.png",
+    "sweep": "populations.png",
+}
 DEMO = ("room", "views", "place_cells", "heading_cells", "compass", "position", "metric_map", "barcodes")
 
 
 def main() -> None:
     """Draw all of them, or those parts that are named."""
-    parts = {"demo": of_the_demo, "layers": of_the_layers, "paper": of_the_paper}
+    parts = {"demo": of_the_demo, "layers": of_the_layers, "paper": of_the_paper, "thumbnails": of_the_readme}
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("part", nargs="*", default=list(parts), choices=list(parts))
     parser.add_argument("--views", type=int, default=17_000)
@@ -82,6 +90,16 @@ def of_the_layers(views: int) -> None:
     cmap.refine(walk.views)
     draw_percepts(cmap, room, eye)
     draw_film(cmap, room, eye, walk)
+
+
+def of_the_readme(_: int) -> None:
+    """Small pictures for six links."""
+    for name, picture in THUMBNAILS.items():
+        image = Image.open(OUT.parent / picture).convert("RGB")
+        across, down = image.size
+        # the upper left part of a tall or wide sheet, in the shape of a card
+        image = image.crop((0, 0, min(across, round(1.6 * down)), min(down, round(across / 1.6))))
+        image.resize((280, 175), Image.Resampling.LANCZOS).quantize(96).save(OUT / f"small_{name}.png", optimize=True)
 
 
 def draw_retina(view: UInt8[np.ndarray, "1 60 360 3"]) -> None:
@@ -191,7 +209,7 @@ def _frame(
 ) -> UInt8[np.ndarray, "height width 3"]:
     height, width = 300, 460
     side = np.full((height, width, 3), 255, np.uint8)
-    for top, view, words in ((0, dreamt, "dreamt, before a step was taken"), (150, seen, "seen, on the way")):
+    for top, view, words in ((0, dreamt, "a way, dreamt from two pictures"), (150, seen, "what an eye sees there")):
         cv2.putText(side, words, (10, top + 24), cv2.FONT_HERSHEY_SIMPLEX, 0.55, (40, 40, 40), 1, cv2.LINE_AA)
         side[top + 36 : top + 136, 10:450] = cv2.resize(view, (440, 100), interpolation=cv2.INTER_AREA)
     return np.concatenate([above, side], axis=1)
