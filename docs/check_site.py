@@ -14,9 +14,29 @@ from urllib.parse import unquote, urlsplit
 
 import snowballstemmer
 
-WORDS = ("gridness", "homology", "odometry", "rayleigh", "deeplabcut", "nwb", "seed", "pillar", "psnr", "dask", "mirror")
+WORDS = (
+    "gridness",
+    "homology",
+    "odometry",
+    "rayleigh",
+    "deeplabcut",
+    "nwb",
+    "seed",
+    "pillar",
+    "psnr",
+    "dask",
+    "mirror",
+)
 """What is looked for among what exists."""
-FETCHED = {"script": "src", "img": "src", "link": "href", "iframe": "src", "video": "src", "source": "src", "audio": "src"}
+FETCHED = {
+    "script": "src",
+    "img": "src",
+    "link": "href",
+    "iframe": "src",
+    "video": "src",
+    "source": "src",
+    "audio": "src",
+}
 
 
 class Page(HTMLParser):
@@ -36,13 +56,19 @@ class Page(HTMLParser):
         if tag == "a" and "href" in told:
             self.links.append(told["href"])
         fetched = FETCHED.get(tag)
-        if fetched in told and not (tag == "link" and told.get("rel") in {"canonical", "next", "prev", "index", "search"}):
+        if fetched in told and not (
+            tag == "link" and told.get("rel") in {"canonical", "next", "prev", "index", "search"}
+        ):
             self.fetched.append(told[fetched])
 
 
 def main(site: Path) -> int:
     """Say all that is wrong, and how much was looked at."""
-    pages = {page: Page(page.read_text(encoding="utf-8")) for page in sorted(site.rglob("*.html")) if page.parent.name != "_static"}
+    pages = {
+        page: Page(page.read_text(encoding="utf-8"))
+        for page in sorted(site.rglob("*.html"))
+        if page.parent.name != "_static"
+    }
     wrong = [*dead_links(site, pages), *fetched_from_elsewhere(site, pages), *not_found(site)]
     for line in wrong:
         print(line, file=sys.stderr)
@@ -62,7 +88,9 @@ def dead_links(site: Path, pages: dict[Path, Page]) -> list[str]:
             there = (path.parent / unquote(parts.path)).resolve() if parts.path else path
             there = there / "index.html" if there.is_dir() else there
             known = pages.get(there)
-            if not there.exists() or (known and parts.fragment and unquote(parts.fragment) not in known.targets):
+            if not there.exists() or (
+                known and parts.fragment and unquote(parts.fragment) not in known.targets
+            ):
                 dead.append(f"{path.relative_to(site)}: {link} leads nowhere")
     return dead
 
@@ -76,7 +104,9 @@ def fetched_from_elsewhere(site: Path, pages: dict[Path, Page]) -> list[str]:
         if urlsplit(what).netloc
     ]
     for style in site.rglob("*.css"):
-        found = re.findall(r"(?:url\(|@import)\s*[\"']?((?:https?:)?//[^\"')\s]+)", style.read_text(encoding="utf-8"))
+        found = re.findall(
+            r"(?:url\(|@import)\s*[\"']?((?:https?:)?//[^\"')\s]+)", style.read_text(encoding="utf-8")
+        )
         asked += [f"{style.relative_to(site)}: {what} is fetched from elsewhere" for what in found]
     return asked
 

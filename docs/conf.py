@@ -48,7 +48,9 @@ autosummary_generate = True
 autosummary_ignore_module_all = False
 autodoc_typehints = "none"  # `readable_types` writes them beside each parameter, with shapes in words
 autodoc_member_order = "bysource"
-autodoc_default_options = {"exclude-members": "set_fit_request, set_score_request, set_transform_request, model_config"}
+autodoc_default_options = {
+    "exclude-members": "set_fit_request, set_score_request, set_transform_request, model_config"
+}
 autodoc_class_signature = "mixed"
 napoleon_google_docstring = False
 napoleon_use_rtype = True
@@ -68,6 +70,6 @@ html_theme_options = {
     "footer_start": ["copyright"],
     "footer_end": [],
     "show_prev_next": True,
-    "header_links_before_dropdown": 6,
+    "header_links_before_dropdown": 7,
     "navigation_with_keys": False,
 }

@@ -59,7 +59,7 @@ def main() -> None:
 
 
 def of_the_demo(views: int) -> None:
-    """What `cogmap demo` leaves behind."""
+    """Keep what `cogmap demo` leaves behind."""
     with TemporaryDirectory() as folder:
         out = Path(folder) / "demo"
         demo(arena.Arena.load("furnished"), out, views=views)
@@ -68,7 +68,7 @@ def of_the_demo(views: int) -> None:
 
 
 def of_the_paper(views: int) -> None:
-    """A ring, a cylinder and a solid torus."""
+    """Draw a ring, a cylinder and a solid torus."""
     for name, (figure, usual) in SIZES.items():
         with TemporaryDirectory() as folder:
             out = Path(folder) / name
@@ -99,16 +99,21 @@ def of_the_readme(_: int) -> None:
         across, down = image.size
         # the upper left part of a tall or wide sheet, in the shape of a card
         image = image.crop((0, 0, min(across, round(1.6 * down)), min(down, round(across / 1.6))))
-        image.resize((280, 175), Image.Resampling.LANCZOS).quantize(96).save(OUT / f"small_{name}.png", optimize=True)
+        image.resize((280, 175), Image.Resampling.LANCZOS).quantize(96).save(
+            OUT / f"small_{name}.png", optimize=True
+        )
 
 
 def draw_retina(view: UInt8[np.ndarray, "1 60 360 3"]) -> None:
-    """A view, and what the retina makes of it."""
+    """Draw a view, and what the retina makes of it."""
     strip = neurons.Retina(60, 360)(torch.from_numpy(view)).reshape(15, 3, 90).permute(0, 2, 1).numpy()
     figure, axes = new_panels(7.0, 2.6, 2, 1)
     shown = np.clip(0.5 + strip / (2 * np.abs(strip).max()), 0, 1)
     for panel, image, title in zip(
-        axes, (view[0], shown), ("a view, 360×60 pixels", "what the retina makes of it, 90×15 receptors"), strict=True
+        axes,
+        (view[0], shown),
+        ("a view, 360×60 pixels", "what the retina makes of it, 90×15 receptors"),
+        strict=True,
     ):
         panel.imshow(image, aspect="auto", extent=(-180, 180, 0, 1))
         tidy(panel, title=title)
@@ -119,7 +124,7 @@ def draw_retina(view: UInt8[np.ndarray, "1 60 360 3"]) -> None:
 
 
 def draw_components(cmap: CognitiveMap) -> None:
-    """The first components of the code, as strips."""
+    """Draw the first components of the code, as strips."""
     weights = cmap.state_dict()["code.weight"][[0, 1, 4, 9, 19, 39]].numpy().reshape(-1, 15, 3, 90)
     figure, axes = new_panels(7.0, 2.4, 3, 2)
     for panel, weight, order in zip(axes.flat, weights, (1, 2, 5, 10, 20, 40), strict=True):
@@ -135,13 +140,17 @@ def draw_spectrum(cmap: CognitiveMap) -> None:
     """How much of a chart's variance lies along each tangent."""
     share = np.asarray(cmap.spectrum_)
     figure, axes = new_panels(4.2, 2.4)
-    axes.bar(np.arange(1, len(share) + 1), share, color=["#c44e52" if k < 3 else "#bbbbbb" for k in range(len(share))])
+    axes.bar(
+        np.arange(1, len(share) + 1),
+        share,
+        color=["#c44e52" if k < 3 else "#bbbbbb" for k in range(len(share))],
+    )
     tidy(axes, x="tangent", y="share of variance", title=f"{100 * cmap.vote_:.0f} % of the charts say: three")
     save(figure, "spectrum")
 
 
 def draw_atlas(cmap: CognitiveMap) -> None:
-    """The centres of the charts, coloured by the heading that they have agreed on."""
+    """Draw the centres of the charts, coloured by the heading that they have agreed on."""
     state = cmap.state_dict()
     centres, phases = state["charts.centres"].numpy(), state["readout.phases"].numpy()
     laid = cogmap.LandmarkIsomap(3, seed=0).fit_transform(centres)
@@ -151,8 +160,10 @@ def draw_atlas(cmap: CognitiveMap) -> None:
 
 
 def draw_smell(cmap: CognitiveMap, room: Arena, walk: Recording) -> None:
-    """What is smelt, with the nose's noise, and what sight recalls of it."""
-    fresh = arena.explore(room, arena.Brownian(), arena.Camera.panoramic(), views=min(len(walk), 5000), seed=1000)
+    """Draw what is smelt, with the nose's noise, and what sight recalls of it."""
+    fresh = arena.explore(
+        room, arena.Brownian(), arena.Camera.panoramic(), views=min(len(walk), 5000), seed=1000
+    )
     smelt, recalled = np.log(np.asarray(fresh.odours)), cmap.perceive(fresh.views).odour
     x, y = fresh.require("poses")[:, :2].T
     figure, axes = new_panels(7.0, 2.5, 1, 3, sharex=True, sharey=True)
@@ -181,7 +192,7 @@ def draw_percepts(cmap: CognitiveMap, room: Arena, eye: Camera) -> None:
 
 
 def draw_film(cmap: CognitiveMap, room: Arena, eye: Camera, walk: Recording) -> None:
-    """A way that is dreamt, and what is then seen on it, beside the room from above; as a GIF."""
+    """Draw a way that is dreamt, and what is then seen on it, beside the room from above; as a GIF."""
     dream = cogmap.Imagination(cmap, memory=walk.views)
     ends = np.array([[-1.6, -1.1, 0.4], [1.6, 1.0, 2.2]])
     film = dream.film(*eye.render(room, ends))
@@ -209,7 +220,10 @@ def _frame(
 ) -> UInt8[np.ndarray, "height width 3"]:
     height, width = 300, 460
     side = np.full((height, width, 3), 255, np.uint8)
-    for top, view, words in ((0, dreamt, "a way, dreamt from two pictures"), (150, seen, "what an eye sees there")):
+    for top, view, words in (
+        (0, dreamt, "a way, dreamt from two pictures"),
+        (150, seen, "what an eye sees there"),
+    ):
         cv2.putText(side, words, (10, top + 24), cv2.FONT_HERSHEY_SIMPLEX, 0.55, (40, 40, 40), 1, cv2.LINE_AA)
         side[top + 36 : top + 136, 10:450] = cv2.resize(view, (440, 100), interpolation=cv2.INTER_AREA)
     return np.concatenate([above, side], axis=1)
@@ -234,7 +248,9 @@ def save_gif(frames: UInt8[np.ndarray, "frames height width 3"], name: str) -> N
     """Write frames by the library's film writer, and put them into one GIF."""
     with TemporaryDirectory() as folder:
         write_film(frames, Path(folder) / "frames")
-        pictures = [Image.open(path).convert("RGB") for path in sorted((Path(folder) / "frames").glob("*.png"))]
+        pictures = [
+            Image.open(path).convert("RGB") for path in sorted((Path(folder) / "frames").glob("*.png"))
+        ]
     colours = [picture.quantize(64, dither=Image.Dither.NONE) for picture in pictures]
     colours[0].save(
         OUT / f"{name}.gif", save_all=True, append_images=colours[1:], duration=120, loop=0, optimize=True
@@ -243,8 +259,6 @@ def save_gif(frames: UInt8[np.ndarray, "frames height width 3"], name: str) -> N
 
 def _shrink(image: Image.Image, name: str) -> None:
     image.convert("RGB").quantize(192).save(OUT / f"{name}.png", optimize=True)
-
-
 
 
 if __name__ == "__main__":

@@ -53,9 +53,23 @@ def write_pages(app: Sphinx, _: Config) -> None:
     for package, about in PACKAGES.items():
         shown = [name for name in public_names(package) if homes[f"{package}.{name}"] == f"{package}.{name}"]
         elsewhere = {name: homes[f"{package}.{name}"] for name in public_names(package) if name not in shown}
-        lines = [package, "=" * len(package), "", f".. py:module:: {package}", "", f"*{about.capitalize()}.*", ""]
+        lines = [
+            package,
+            "=" * len(package),
+            "",
+            f".. py:module:: {package}",
+            "",
+            f"*{about.capitalize()}.*",
+            "",
+        ]
         lines += [import_module(package).__doc__ or "", ""]
-        lines += [".. currentmodule:: " + package, "", ".. autosummary::", "   :toctree: generated", "   :nosignatures:"]
+        lines += [
+            ".. currentmodule:: " + package,
+            "",
+            ".. autosummary::",
+            "   :toctree: generated",
+            "   :nosignatures:",
+        ]
         lines += ["", *(f"   {name}" for name in shown), ""]
         if elsewhere:
             also = ", ".join(f":py:obj:`{name} <{home}>`" for name, home in elsewhere.items())

@@ -22,7 +22,13 @@ KINDS = {
     "Integer": "integer", "Bool": "boolean", "UInt8": "uint8", "Complex": "complex", "Num": "number",
     "Shaped": "any",
 }  # fmt: skip
-HOLDERS = {"np.ndarray": "array", "ndarray": "array", "Tensor": "tensor", "torch.Tensor": "tensor", "Array": "array"}
+HOLDERS = {
+    "np.ndarray": "array",
+    "ndarray": "array",
+    "Tensor": "tensor",
+    "torch.Tensor": "tensor",
+    "Array": "array",
+}
 ARRAY = re.compile(r"\b(" + "|".join(KINDS) + r""")\[\s*([\w.| ]+?),\s*["']([^"']*)["']\s*\]""")
 HELD = "What it holds"
 """Instead of a section of attributes, which Sphinx would describe a second time; conf.py names it, too."""
@@ -41,10 +47,16 @@ def readable(annotation: object) -> str:
     text = ARRAY.sub(array, text.replace("jaxtyping.", ""))
     for name, word in WORDS.items():
         text = re.sub(rf"(?<![\w.]){re.escape(name)}\b", word, text)
-    text = re.sub(r"\b(?:arena|neurons|cogmap|typing|pathlib|collections\.abc)(?:\.[a-z_]+)*\.(?=[A-Z])", "", text)
+    text = re.sub(
+        r"\b(?:arena|neurons|cogmap|typing|pathlib|collections\.abc)(?:\.[a-z_]+)*\.(?=[A-Z])", "", text
+    )
     # numpy's own scalars are taken wherever plain ones are
     text = re.sub(r" \| (?:np|numpy)\.(?:floating|integer|bool)\b", "", text)
-    return text.replace(" | ", " or ") if "Literal" in text else text.replace(" | ", " or ").replace('"', "").replace("'", "")
+    return (
+        text.replace(" | ", " or ")
+        if "Literal" in text
+        else text.replace(" | ", " or ").replace('"', "").replace("'", "")
+    )
 
 
 def typed(obj: object, lines: list[str]) -> list[str]:
@@ -88,11 +100,17 @@ def _before_notes(lines: list[str], added: list[str]) -> list[str]:
 def add_types(_: Sphinx, what: str, name: str, obj: Any, __: Any, lines: list[str]) -> None:
     """Rewrite a docstring before it is read as one of numpy's."""
     # |x| is an absolute value here, no substitution
-    lines[:] = [re.sub(r"\|", r"\\|", line) if "`" not in line and not line.startswith("|") else line for line in lines]
+    lines[:] = [
+        re.sub(r"\|", r"\\|", line) if "`" not in line and not line.startswith("|") else line
+        for line in lines
+    ]
     if what in {"function", "method", "class", "exception"}:
         lines[:] = typed(obj, lines)
     elif what == "attribute" and (annotation := _annotation_of(name)):
-        lines[:] = [f"``{annotation}`` — {lines[0]}" if lines and lines[0] else f"``{annotation}``", *lines[1:]]
+        lines[:] = [
+            f"``{annotation}`` — {lines[0]}" if lines and lines[0] else f"``{annotation}``",
+            *lines[1:],
+        ]
     elif what == "property" and getattr(obj, "fget", None) is not None:
         returned = inspect.get_annotations(obj.fget).get("return")
         if returned is not None and lines:
@@ -118,7 +136,9 @@ def ours(
     return [pending_xref("", shown, refdomain="", reftype="ours", reftarget=text, refdoc=document)], []
 
 
-def resolve(app: Sphinx, env: BuildEnvironment, node: pending_xref, shown: nodes.Element) -> nodes.Element | None:
+def resolve(
+    app: Sphinx, env: BuildEnvironment, node: pending_xref, shown: nodes.Element
+) -> nodes.Element | None:
     """Link to what is documented, under whichever name it was asked for; what is not of ours stays code."""
     kind, target = node.get("reftype"), node["reftarget"].removesuffix("()")
     if kind != "ours" and node.get("refdomain") != "py":

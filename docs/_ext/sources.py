@@ -16,7 +16,9 @@ def source(
 ) -> tuple[list[nodes.Node], list[nodes.system_message]]:
     """Show a path of the repository as code, and warn where there is no such file."""
     if not (ROOT / text).exists():
-        LOG.warning("there is no %s in the repository", text, location=(inliner.document.current_source, line))
+        LOG.warning(
+            "there is no %s in the repository", text, location=(inliner.document.current_source, line)
+        )
     return [nodes.literal(text, text)], []
 
 

@@ -1,4 +1,4 @@
-"""Every measure is defined: those that tables and metrics of the code name, with all that is asked of each."""
+"""Every measure that tables and metrics of the code name is defined, with all that is asked of it."""
 
 from __future__ import annotations
 
@@ -48,12 +48,20 @@ def is_defined(name: str) -> bool:
 def keys_of(path: Path) -> Iterator[str]:
     """Names of entries that a module makes or takes: keys of dictionaries, what stands in brackets."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        keys = node.keys if isinstance(node, ast.Dict) else [node.slice] if isinstance(node, ast.Subscript) else []
+        keys = (
+            node.keys
+            if isinstance(node, ast.Dict)
+            else [node.slice]
+            if isinstance(node, ast.Subscript)
+            else []
+        )
         for key in keys:
             if isinstance(key, ast.Constant) and isinstance(key.value, str):
                 yield key.value
             elif isinstance(key, ast.JoinedStr):
-                yield "".join(str(part.value) if isinstance(part, ast.Constant) else "*" for part in key.values)
+                yield "".join(
+                    str(part.value) if isinstance(part, ast.Constant) else "*" for part in key.values
+                )
 
 
 def test_every_measure_that_the_code_names_is_defined() -> None:
@@ -87,7 +95,9 @@ def test_every_public_function_that_measures_cells_is_defined() -> None:
         for name in cogmap.cells.__all__
         if (home := getattr(cogmap.cells, name)).__module__.startswith(about) and not isinstance(home, type)
     ]
-    mentioned = {word for _, text in DEFINED.values() for word in re.findall(r"`(\w+)", text)} | DEFINED.keys()
+    mentioned = {
+        word for _, text in DEFINED.values() for word in re.findall(r"`(\w+)", text)
+    } | DEFINED.keys()
     assert len(named) > 12
     assert [name for name in named if name not in mentioned] == []
 

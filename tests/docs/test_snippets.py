@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from arena import Arena
+from arena import Arena, Camera
 from cogmap import Plan
 from cogmap.commands import app
 from cogmap.features import vocabulary
@@ -42,7 +42,11 @@ def test_the_python_of_a_page_runs_in_order(
     for index, text in enumerate(blocks(page, "toml")):
         said = tomllib.loads(text)
         (tmp_path / f"{said.get('name', f'plan{index}')}.toml").write_text(text, encoding="utf-8")
-    monkeypatch.setattr(vocabulary, "EXAMPLES", 2000)  # words are learnt from fewer descriptors
+    look = Camera.perspective
+    monkeypatch.setattr(
+        vocabulary, "EXAMPLES", 2000
+    )  # words are learnt from fewer descriptors, of small views
+    monkeypatch.setattr(Camera, "perspective", lambda width=160, height=120: look(width, height))
     names: dict[str, object] = {}
     for block in blocks(page, "python"):
         exec(compile(block, name(page), "exec"), names)  # noqa: S102
