@@ -112,7 +112,7 @@ def fetched_from_elsewhere(site: Path, pages: dict[Path, Page]) -> list[str]:
 
 
 def not_found(site: Path) -> list[str]:
-    """Say which words a search of the site would not find; it looks for stems, as the site's own script does."""
+    """Say which words a search would not find; it looks for stems, as the script of the site does."""
     text = (site / "searchindex.js").read_text(encoding="utf-8")
     index = json.loads(text.removeprefix("Search.setIndex(").removesuffix(")"))
     stem = snowballstemmer.stemmer("english").stemWord

@@ -20,7 +20,9 @@ PACKAGES = {
     "cogmap.navigation": "localising and ways",
     "cogmap.imagination": "dreams and expectations",
     "cogmap.control": "motor models and reaching",
+    "cogmap.experiments": "what an experiment of yours is made of",
     "cogmap.plots": "figures from results",
+    "cogmap.sweeps": "one experiment at many points",
     "cogmap.testing": "assertions for tests of yours",
 }
 """Packages with a face, and what each is for."""
