@@ -3,7 +3,7 @@ PYTHON ?= python3
 OUT ?= demo
 BIN := .venv/bin
 
-.PHONY: demo test lint bench verify portable notebooks clean
+.PHONY: demo test lint bench verify portable notebooks docs clean
 
 demo: .venv/installed
 	$(BIN)/cogmap demo --out $(OUT)
@@ -31,6 +31,10 @@ portable: .venv/installed
 notebooks: .venv/installed
 	$(BIN)/jupyter execute --inplace --timeout=1800 notebooks/*.ipynb
 
+docs: .venv/documented
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --nitpicky --quiet -b html docs docs/_build/html
+	$(BIN)/python docs/check_site.py docs/_build/html
+
 .venv/installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --editable '.[dev]'
@@ -40,5 +44,9 @@ notebooks: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --editable '.[dev,peers]'
 	touch $@
 
+.venv/documented: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt --editable '.[dev,docs]'
+	touch $@
+
 clean:
-	rm -rf .venv
+	rm -rf .venv docs/_build docs/api/generated docs/notebooks
