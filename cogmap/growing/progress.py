@@ -16,7 +16,7 @@ COSTS = {
     "corrected_metric_map": 80.0,
     "afferents": 35.0,
 }
-"""What a view costs beside others, as measured in `docs/many_explorers.md`: they tell the time left."""
+"""What a view costs beside others, as measured in `docs/howto/many_explorers.md`: they tell the time left."""
 USUAL = 100.0
 """What it costs in a stage that is not among them."""
 

@@ -20,6 +20,7 @@ PACKAGES = {
     "cogmap.navigation": "localising and ways",
     "cogmap.imagination": "dreams and expectations",
     "cogmap.control": "motor models and reaching",
+    "cogmap.growing": "one map of many explorers",
     "cogmap.experiments": "what an experiment of yours is made of",
     "cogmap.plots": "figures from results",
     "cogmap.sweeps": "one experiment at many points",
