@@ -20,6 +20,7 @@ PRINTS = {
     "howto/body.md": r"0.02\n\(40, 2\) \['circle', 'line'\]\n",
     "howto/camera.md": r"\(400, 20, 120, 3\) \(400, 3\) 39.9\n\(100, \d+\) \d.*\n",
     "howto/cell.md": r"fields +\d.*\nspatial_information +[1-9].*\n.*\n",
+    "howto/many_rooms.md": r"2 \[.*0 1\]\n",
     "howto/motion.md": r"\(60, 3\) .*Spiral.*\n\(40, 2\)\n",
     "howto/room.md": r"my_room 3 \[False  True\]\n\(50, 15, 90, 3\) \(50, 3\)\n",
     "howto/sweep.md": r"2 True\n",
