@@ -16,7 +16,8 @@ def test_three_rooms_hang_together_by_two_doors() -> None:
 
 
 def test_both_are_learnt_as_one_piece() -> None:
-    found = run_experiment("door", views=600, camera=Camera.panoramic(90, 15)).metrics
+    found = run_experiment("door", views=600, camera=Camera.panoramic(90, 15), map={"place_cells": 40})
+    found = found.metrics
     for prefix in ("", "third_room_"):
         assert found[f"{prefix}pieces"] == 1
         assert found[f"{prefix}position_median_m"] < 2.0

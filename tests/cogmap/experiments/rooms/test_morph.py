@@ -37,7 +37,7 @@ def test_the_width_of_a_logistic_is_found_and_a_flat_curve_has_none() -> None:
 def test_cells_switch_between_two_rooms(monkeypatch: pytest.MonkeyPatch, small: Arena) -> None:
     monkeypatch.setattr(morph, "SEEDS", 2)
     monkeypatch.setattr(morph, "STEPS", 5)
-    found = run_experiment("morph", views=700, room=small)
+    found = run_experiment("morph", views=500, room=small)
     curves = found.tables["curves"].groupby("blend")[["place", "room"]].mean()
     assert curves["place"].iloc[0] < -0.5
     assert curves["place"].iloc[-1] > 0.5
