@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
+from itertools import chain, islice
 from typing import TypeVar
 
 import cv2
@@ -43,13 +44,18 @@ def in_order(work: Callable[[Item], Done], items: Iterable[Item]) -> Iterator[Do
     """Work on items in as many threads as there are cores; give what comes of them in their order.
 
     Each item is one thread's alone, so that the number of threads changes no bit. No more than one item a
-    thread waits to be taken: memory does not grow with their number.
+    thread waits to be taken: memory does not grow with their number. One alone is done here: a thread takes
+    as long to start as a view takes to be perceived.
     """
-    workers = cpu_count()
+    workers, items = cpu_count(), iter(items)
+    begun = list(islice(items, 2))
+    if len(begun) < 2:
+        yield from map(work, begun)
+        return
     # torch counts threads for each thread anew
     with ThreadPoolExecutor(workers, initializer=torch.set_num_threads, initargs=(1,)) as pool:
         waiting: deque[Future[Done]] = deque()
-        for item in items:
+        for item in chain(begun, items):
             waiting.append(pool.submit(work, item))
             if len(waiting) > workers:
                 yield waiting.popleft().result()
