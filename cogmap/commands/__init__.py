@@ -21,6 +21,7 @@ _COMMANDS = {
     "export": "maps:_export",
     "import": "pictures:_import",
     "learn": "maps:_learn",
+    "page": "page:_page",
     "reach": "acting:_reach",
     "report": "results:_page",
     "score": "maps:_score",

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from cogmap.pages.live.pictures import data_url, heat, packed
-from cogmap.pages.live.scenery import Json, room_lines
+from cogmap.pages.live.scenery import Json
 from cogmap.pages.live.session import Look, Session
 from cogmap.pages.live.world import World
 
@@ -47,11 +47,6 @@ def frame(session: Session, look: Look) -> Json:
 def dreamt_frames(session: Session, since: int) -> list[str]:
     """Give the dreamt views of the route from one on, which are sent once each."""
     return [data_url(view) for view in session.dreamt[since:]]
-
-
-def moved_room(session: Session) -> Json | None:
-    """Give the room anew where a box was moved, else None."""
-    return None if session.room is session.world.room else room_lines(session.room)
 
 
 @lru_cache(maxsize=256)

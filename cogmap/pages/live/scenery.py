@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -30,8 +31,9 @@ LINKS = 3000
 Json = dict[str, Any]
 
 
+@lru_cache(maxsize=4)
 def scenery(world: World) -> Json:
-    """Give the room, what the map knows of it laid over it, and the embedding."""
+    """Give the room, what the map knows of it laid over it, and the embedding; made once."""
     return {
         "room": room_lines(world.room),
         "radius": world.body.radius,

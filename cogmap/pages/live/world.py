@@ -104,3 +104,4 @@ class World:
         with self.lock:
             self.mind.prepare()
             _ = self.map_frame, self.heading_frame
+            self.mind.look(np.asarray(self.walk.views[0]))

@@ -1,0 +1,103 @@
+"""The command that shows an explorer at large: a page in the browser."""
+
+import socket
+import sys
+from typing import Annotated
+
+import numpy as np
+from cyclopts import Parameter
+
+from arena import Arena, Recording
+from cogmap.commands.acting import _refine, _world
+from cogmap.commands.common import MaybePath, Seed, UserPath
+from cogmap.control import MotorModel
+from cogmap.errors import CogmapError
+from cogmap.experiments.acting.travels import babble
+from cogmap.map.cognitive_map import CognitiveMap
+from cogmap.pages.live.mind import Mind
+from cogmap.pages.live.world import World
+
+
+def _page(
+    cmap: UserPath,
+    /,
+    *,
+    memory: UserPath,
+    arena: str | None = None,
+    motor: MaybePath = None,
+    replay: list[UserPath] | None = None,
+    port: int = 8080,
+    open_browser: Annotated[bool, Parameter(name="--show", negative="")] = False,
+    seed: Seed = 0,
+) -> None:
+    """Show the explorer in a browser: it looks, dreams, and goes where one points, until Ctrl-C.
+
+    The page is served on this machine alone. Needs the extra `page`: `pip install 'cogmap[page]'`.
+
+    Examples: `cogmap page map --memory walk.zarr --arena furnished`; with the motor model that `cogmap reach`
+    left: `cogmap page map --memory walk.zarr --motor reached/motor --replay rat.zarr`.
+
+    Parameters
+    ----------
+    cmap
+        Folder that `cogmap learn --refine` wrote; its places are relaxed first where they are not yet.
+    memory
+        The recording that the map was learnt from: what the explorer remembers.
+    arena
+        A room of the gallery or a TOML file; that of the recording when not given.
+    motor
+        Folder of a motor model that `cogmap reach` left; else the body babbles first.
+    replay
+        Other recordings to replay, of real animals' paths, too; may be given several times.
+    port
+        Of 127.0.0.1.
+    open_browser
+        Open the page in a browser at once.
+    """
+    try:
+        from cogmap.pages.live.server import serve  # noqa: PLC0415
+    except ImportError as error:
+        raise CogmapError(
+            f"the page needs NiceGUI ({error}); install it: pip install 'cogmap[page]'"
+        ) from None
+    _check_port(port)
+    world = prepared(cmap, memory, arena, motor, replay or [], seed)
+    serve(world, port=port, show=open_browser)
+
+
+def prepared(
+    cmap: UserPath,
+    memory: UserPath,
+    arena: str | None,
+    motor: MaybePath,
+    replay: list[UserPath],
+    seed: int,
+) -> World:
+    """Load a map with what it remembers, and make all that a first page would wait for."""
+    grown, walk = CognitiveMap.load(cmap), Recording.open(memory)
+    place = _world(walk, memory)
+    room = place.room if arena is None else Arena.load(arena)
+    _refine(grown, walk)
+    known = None if motor is None else MotorModel.load(motor)
+    if known is None and grown.relaxed_places_ is not None:
+        _say("the body babbles, to learn what its commands do")
+        known = babble(room, place.camera, grown, place.body, seed)
+    _say("what is remembered is laid out; it takes some seconds")
+    mind = Mind(grown, memory=np.asarray(walk.views[:]), motor=known)
+    replays = {path.stem: Recording.open(path) for path in (memory, *replay)}
+    world = World(room, place.camera, place.body, mind, walk, replays=replays)
+    world.prepare()
+    return world
+
+
+def _say(what: str) -> None:
+    sys.stderr.write(f"cogmap: {what}\n")
+
+
+def _check_port(port: int) -> None:
+    with socket.socket() as door:
+        door.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            door.bind(("127.0.0.1", port))
+        except (OSError, OverflowError) as error:
+            raise CogmapError(f"port {port} cannot be had ({error}); choose another with --port") from None
