@@ -9,11 +9,12 @@ from cyclopts import Parameter
 
 from arena import Arena, Recording
 from cogmap.commands.acting import _refine, _world
-from cogmap.commands.common import MaybePath, Seed, UserPath
+from cogmap.commands.common import MaybePath, Seed, UserPath, tell
 from cogmap.control import MotorModel
 from cogmap.errors import CogmapError
 from cogmap.experiments.acting.travels import babble
 from cogmap.map.cognitive_map import CognitiveMap
+from cogmap.pages.live.freezing import freeze as frozen
 from cogmap.pages.live.mind import Mind
 from cogmap.pages.live.world import World
 
@@ -26,6 +27,8 @@ def _page(
     arena: str | None = None,
     motor: MaybePath = None,
     replay: list[UserPath] | None = None,
+    freeze: MaybePath = None,
+    poses: int = 240,
     port: int = 8080,
     open_browser: Annotated[bool, Parameter(name="--show", negative="")] = False,
     seed: Seed = 0,
@@ -35,7 +38,8 @@ def _page(
     The page is served on this machine alone. Needs the extra `page`: `pip install 'cogmap[page]'`.
 
     Examples: `cogmap page map --memory walk.zarr --arena furnished`; with the motor model that `cogmap reach`
-    left: `cogmap page map --memory walk.zarr --motor reached/motor --replay rat.zarr`.
+    left: `cogmap page map --memory walk.zarr --motor reached/motor --replay rat.zarr`; as one file to mail, which
+    needs no server: `cogmap page map --memory walk.zarr --freeze page.html`.
 
     Parameters
     ----------
@@ -49,11 +53,19 @@ def _page(
         Folder of a motor model that `cogmap reach` left; else the body babbles first.
     replay
         Other recordings to replay, of real animals' paths, too; may be given several times.
+    freeze
+        Write this .html file, which holds sampled poses and asks for nothing, and serve no page.
+    poses
+        How many it holds.
     port
         Of 127.0.0.1.
     open_browser
         Open the page in a browser at once.
     """
+    if freeze is not None:
+        written = frozen(prepared(cmap, memory, arena, None, [], seed, acts=False), freeze, poses=poses, seed=seed)
+        tell({"page": str(written), "bytes": written.stat().st_size}, as_json=False)
+        return
     try:
         from cogmap.pages.live.server import serve  # noqa: PLC0415
     except ImportError as error:
@@ -72,6 +84,8 @@ def prepared(
     motor: MaybePath,
     replay: list[UserPath],
     seed: int,
+    *,
+    acts: bool = True,
 ) -> World:
     """Load a map with what it remembers, and make all that a first page would wait for."""
     grown, walk = CognitiveMap.load(cmap), Recording.open(memory)
@@ -79,7 +93,7 @@ def prepared(
     room = place.room if arena is None else Arena.load(arena)
     _refine(grown, walk)
     known = None if motor is None else MotorModel.load(motor)
-    if known is None and grown.relaxed_places_ is not None:
+    if acts and known is None and grown.relaxed_places_ is not None:
         _say("the body babbles, to learn what its commands do")
         known = babble(room, place.camera, grown, place.body, seed)
     _say("what is remembered is laid out; it takes some seconds")

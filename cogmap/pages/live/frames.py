@@ -13,10 +13,6 @@ from cogmap.pages.live.scenery import Json
 from cogmap.pages.live.session import Look, Session
 from cogmap.pages.live.world import World
 
-PLACE_RATE, HEADING_RATE = 20.0, 40.0
-"""Rates (Hz) that are drawn brightest unless a cell has fired more."""
-
-
 def frame(session: Session, look: Look) -> Json:
     """Give all that changes from step to step."""
     activity, thought = look.thought.activity, look.thought
@@ -31,8 +27,8 @@ def frame(session: Session, look: Look) -> Json:
         "surprise": None if dreamt is None or dreamt.unusual is None else data_url(heat(dreamt.unusual)),
         "surprised": None if dreamt is None or dreamt.unusual is None else _number(dreamt.unusual.max()),
         "novelty": None if activity.novelty is None else _number(activity.novelty[0]),
-        "place": _bytes(activity.place[0], PLACE_RATE),
-        "heading": _bytes(activity.heading[0], HEADING_RATE),
+        "place": _bytes(activity.place[0], session.world.full_rates[0]),
+        "heading": _bytes(activity.heading[0], session.world.full_rates[1]),
         "near": [_remembered(session.world, int(view)) for view in thought.nearest],
         "point": _listed(thought.point),
         "doing": session.doing.value,
@@ -56,8 +52,7 @@ def _remembered(world: World, view: int) -> Json:
 
 
 def _bytes(rates: Float[np.ndarray, "cells"], full: float) -> str:
-    top = max(full, float(np.nan_to_num(rates).max(initial=0.0)))
-    return packed(np.round(255 * np.clip(np.nan_to_num(rates) / top, 0, 1)).astype(np.uint8))
+    return packed(np.round(255 * np.clip(np.nan_to_num(rates) / full, 0, 1)).astype(np.uint8))
 
 
 def _listed(values: Any) -> list[float | None] | None:

@@ -96,7 +96,6 @@ class Page {
     const plan = panel("plan", "The room from above", "");
     this.note = plan.querySelector("small");
     this.plan = new Sheet(element("div", plan, { class: "sheet" }), 0.84, "the room from above, with the explorer");
-    this.plan.canvas.tabIndex = 0;
     const chips = element("div", plan, { class: "chips" });
     for (const [name, label] of Object.entries(LAYERS)) {
       const chip = element("button", chips, { type: "button", "data-layer": name, "aria-pressed": this.shown.has(name) }, label);
@@ -158,7 +157,7 @@ class Page {
     plan.onpointerdown = (event) => {
       if (!this.scene) return;
       plan.setPointerCapture(event.pointerId);
-      plan.focus({ preventScroll: true });
+      document.activeElement?.blur();
       const place = at(event), tool = event.shiftKey ? "goal" : this.tool;
       this.drag = { tool, place, pixel: [event.clientX, event.clientY], heading: null };
       if (tool === "box") this.drag.box = this.boxAt(place);
@@ -276,9 +275,17 @@ class Page {
     this.word.textContent = [frame.lights ? loud + strange : "in the dark: the nose tells place, nothing tells heading", this.scene.reason && `it does not dream: ${this.scene.reason}`].filter(Boolean).join(" · ");
     this.errors.push([frame.errors.m, frame.errors.rad]);
     if (this.errors.length > KEPT) this.errors.shift();
-    if (known(frame.pose)) this.trail.push([frame.pose[0], frame.pose[1]]);
+    if (known(frame.pose)) {
+      const last = this.trail.at(-1), here = [frame.pose[0], frame.pose[1]];
+      if (last && Math.hypot(last[0] - here[0], last[1] - here[1]) > 0.4) this.trail = [];
+      this.trail.push(here);
+    }
     if (this.trail.length > 4 * KEPT) this.trail.shift();
-    if (frame.point) this.way.push(frame.point);
+    if (frame.point) {
+      const last = this.way.at(-1);
+      if (last && Math.hypot(...last.map((v, k) => v - frame.point[k])) > 0.3) this.way = [];
+      this.way.push(frame.point);
+    }
     if (this.way.length > 60) this.way.shift();
     this.rates = { place: unpacked(frame.place, Uint8Array), heading: unpacked(frame.heading, Uint8Array) };
     await Promise.all(waiting);
@@ -384,7 +391,7 @@ class Page {
         if (this.fields[cell * size + bin] > rate) [best, rate] = [cell, this.fields[cell * size + bin]];
       }
       const hue = this.shown.has("field") ? 210 : (best * 137.5) % 360, share = rate / 254;
-      const [r, g, b] = [0, 8, 4].map((k) => { const m = (k + hue / 30) % 12; return 255 * (0.55 - 0.35 * Math.max(-1, Math.min(m - 3, 9 - m, 1))); });
+      const [r, g, b] = [0, 8, 4].map((k) => { const m = (k + hue / 30) % 12; return 255 * (0.62 - 0.22 * Math.max(-1, Math.min(m - 3, 9 - m, 1))); });
       image.data.set([r, g, b, 220 * (this.shown.has("field") ? share : share * share)], 4 * ((rows - 1 - Math.floor(bin / columns)) * columns + (bin % columns)));
     }
     const small = document.createElement("canvas");
@@ -572,6 +579,8 @@ class Page {
 // In a frozen file what is done leads to the nearest pose that was sampled.
 function thaw(root, frozen) {
   let here = [0, 0, 0];
+  // views that several poses have in common are held once
+  for (const frame of frozen.frames) for (const near of frame.near) near.view = frozen.held[near.view];
   const page = new Page(root, (said) => {
     if (said.goal || said.box !== undefined) return;
     const step = said.drive || [0, 0];

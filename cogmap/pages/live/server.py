@@ -24,7 +24,9 @@ from cogmap.pages.live.world import World
 TICK = 0.02
 """Time (s) between two looks at whether anything is to be done."""
 PATIENCE = 1.0
-"""Time (s) after which a browser that has not drawn the last frame is sent another."""
+"""Time (s) after which a browser that has not drawn what it was sent is sent more."""
+AHEAD = 2
+"""Frames that a browser may not have drawn yet: the next is thought while the last is drawn."""
 TOOLS = {"stand": "stand", "goal": "goal", "box": "move a box"}
 THINKER = ThreadPoolExecutor(1, thread_name_prefix="cogmap-page")
 """One thread thinks for all pages, in turn: they share a mind, and one core is enough."""
@@ -47,7 +49,7 @@ class Tab:
 
     def __init__(self, world: World, seed: int) -> None:
         self.world, self.player = world, Player(Session(world, seed=seed))
-        self._ready, self._drawn, self._sent = False, True, 0.0
+        self._ready, self._waiting, self._sent = False, 0, 0.0
         self._last = time.perf_counter()
         self._busy = False
 
@@ -86,15 +88,17 @@ class Tab:
 
     def _begin(self) -> None:
         self.scene.run_method("scene", scenery(self.world))
-        self._ready, self._drawn, self._sent = True, True, 0.0
+        self._ready, self._waiting, self._sent = True, 0, 0.0
 
     def _has_drawn(self) -> None:
-        self._drawn = True
+        self._waiting = max(0, self._waiting - 1)
 
     async def _turn(self) -> None:
         """Think, elsewhere, while the browser draws, and send what has changed."""
         now = time.perf_counter()
-        if self._busy or not self._ready or not (self._drawn or now - self._sent > PATIENCE):
+        if now - self._sent > PATIENCE:
+            self._waiting = 0
+        if self._busy or not self._ready or self._waiting >= AHEAD:
             return
         self._busy = True
         try:
@@ -110,7 +114,7 @@ class Tab:
             self._busy = False
 
     def _show(self, update: Update) -> None:
-        self._drawn, self._sent = False, time.perf_counter()
+        self._waiting, self._sent = self._waiting + 1, time.perf_counter()
         if update.room is not None:
             self.scene.run_method("room", update.room)
         if update.dreamt:

@@ -86,6 +86,15 @@ class World:
         found = self.mind.remembered.phase
         return None if np.isnan(found).any() else fit_heading_frame(found, self.sampled_poses[:, 2])
 
+    @cached_property
+    def full_rates(self) -> tuple[float, float]:
+        """Rates (Hz) of a place cell and of a heading cell that are drawn brightest: of the strongest of each
+        in most views."""
+        seen = self.mind.remembered
+        strongest = (np.nan_to_num(rates).max(axis=1, initial=0.0) for rates in (seen.place, seen.heading))
+        place, heading = (max(float(np.median(rates)), 1e-6) for rates in strongest)
+        return place, heading
+
     def in_room(self, mapped: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, "points 2"]:
         """Lay positions of the map in the room, m; NaN without a metric map."""
         if self.map_frame is None or not len(mapped):
