@@ -19,6 +19,7 @@ _COMMANDS = {
     "experiment": "results:experiment_command",
     "explore": "rooms:_explore",
     "export": "maps:_export",
+    "film": "page:_film",
     "import": "pictures:_import",
     "learn": "maps:_learn",
     "page": "page:_page",

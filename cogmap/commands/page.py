@@ -1,4 +1,4 @@
-"""The command that shows an explorer at large: a page in the browser."""
+"""Commands that show an explorer at large: a page in the browser, and a film."""
 
 import socket
 import sys
@@ -9,11 +9,13 @@ from cyclopts import Parameter
 
 from arena import Arena, Recording
 from cogmap.commands.acting import _refine, _world
-from cogmap.commands.common import MaybePath, Seed, UserPath, tell
+from cogmap.commands.common import Json, MaybePath, Seed, UserPath, tell
 from cogmap.control import MotorModel
 from cogmap.errors import CogmapError
 from cogmap.experiments.acting.travels import babble
 from cogmap.map.cognitive_map import CognitiveMap
+from cogmap.pages.film import check_film, write_frames
+from cogmap.pages.live.filming import RATE, journeys_filmed
 from cogmap.pages.live.freezing import freeze as frozen
 from cogmap.pages.live.mind import Mind
 from cogmap.pages.live.world import World
@@ -75,6 +77,44 @@ def _page(
     _check_port(port)
     world = prepared(cmap, memory, arena, motor, replay or [], seed)
     serve(world, port=port, show=open_browser)
+
+
+def _film(
+    cmap: UserPath,
+    /,
+    *,
+    memory: UserPath,
+    out: UserPath,
+    arena: str | None = None,
+    motor: MaybePath = None,
+    seconds: float = 20.0,
+    seed: Seed = 0,
+    as_json: Json = False,
+) -> None:
+    """Film the explorer as it goes from goal to goal by sight alone, as the page shows it, without a browser.
+
+    Examples: `cogmap film map --memory walk.zarr --out journey.mp4`;
+    `cogmap film map --memory walk.zarr --motor reached/motor --seconds 8 --out journey.gif`.
+
+    Parameters
+    ----------
+    cmap
+        Folder that `cogmap learn --refine` wrote; its places are relaxed first where they are not yet.
+    memory
+        The recording that the map was learnt from: what the explorer remembers.
+    out
+        Film to write, .mp4 or .gif, or a folder for PNGs; it must not exist.
+    arena
+        A room of the gallery or a TOML file; that of the recording when not given.
+    motor
+        Folder of a motor model that `cogmap reach` left; else the body babbles first.
+    seconds
+        How long it is.
+    """
+    check_film(out)
+    world = prepared(cmap, memory, arena, motor, [], seed)
+    write_frames(journeys_filmed(world, seconds=seconds, seed=seed), out, rate=RATE)
+    tell({"film": str(out), "seconds": seconds, "frames_per_second": RATE}, as_json=as_json)
 
 
 def prepared(

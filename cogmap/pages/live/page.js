@@ -106,7 +106,8 @@ class Page {
         this.paint();
       };
     }
-    this.pick = element("input", chips, { type: "number", min: 0, value: 0, title: "which place cell", "aria-label": "place cell" });
+    this.pick = element("input", document.createElement("span"), { type: "number", min: 0, value: 0, title: "which place cell", "aria-label": "place cell" });
+    chips.querySelector("[data-layer=field]").after(this.pick);
     this.pick.oninput = () => {
       this.cell = Math.max(0, Math.min(this.scene.fields.cells - 1, Number(this.pick.value) || 0));
       if (!this.shown.has("field")) chips.querySelector("[data-layer=field]").click();
@@ -536,7 +537,7 @@ class Page {
 
   project(x, y, z) {
     const [c, s, cp, sp] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
-    const [u, v] = [c * x - s * y, s * x + c * y], size = 0.46 * Math.min(this.cloud.width, this.cloud.height);
+    const [u, v] = [c * x - s * y, s * x + c * y], size = 0.55 * Math.min(this.cloud.width, this.cloud.height);
     return [this.cloud.width / 2 + size * u, this.cloud.height / 2 - size * (cp * z - sp * v), cp * v + sp * z];
   }
 
@@ -594,6 +595,7 @@ function thaw(root, frozen) {
     if (!step[0] && !step[1]) here = [...nearest.pose];
     page.setFrame({ ...nearest, act });
   };
+  root.classList.add("frozen");
   page.setScene(frozen.scene);
   page.note.textContent = `${frozen.scene.room.name}: click, drag, arrow keys; this file holds ${frozen.frames.length} poses`;
   here = [...frozen.frames[0].pose];
