@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from itertools import chain
+from itertools import chain, islice
 from pathlib import Path
 
 import cv2
@@ -19,6 +19,8 @@ Frame = UInt8[np.ndarray, "height width 3"]
 KINDS = (".mp4", ".gif", "")
 SMALL = 640
 """Width (pixels) below which an MP4 shows each pixel as four: they bear its compression."""
+FIRST = 12
+"""Frames that the palette of a GIF is made of."""
 
 
 def check_film(out: str | Path) -> Path:
@@ -56,7 +58,7 @@ def write_film(views: AnyArray, out: str | Path, *, rate: float = 15.0) -> None:
 
 
 def write_frames(frames: Iterable[Frame], out: str | Path, *, rate: float = 15.0) -> None:
-    """Write frames as they come, as `write_film` does; no more than one is held."""
+    """Write frames as they come, as `write_film` does; no more than a dozen are held."""
     out = check_film(out)
     with atomic_write(out, overwrite=False) as path:
         if out.suffix == ".mp4":
@@ -84,7 +86,14 @@ def _write_mp4(frames: Iterator[Frame], path: Path, rate: float) -> None:
 
 
 def _write_gif(frames: Iterator[Frame], path: Path, rate: float) -> None:
-    # all of the first frame's colours: a film is of one scene, and a palette a frame flickers
-    first = Image.fromarray(next(frames)).quantize(256, dither=Image.Dither.NONE)
-    rest = (Image.fromarray(view).quantize(palette=first, dither=Image.Dither.NONE) for view in frames)
-    first.save(path, "GIF", save_all=True, append_images=rest, duration=round(100 / rate) * 10, loop=0)
+    begun = list(islice(frames, FIRST))
+    # one palette for all: a palette a frame flickers; of several frames, as more comes into sight
+    shown = Image.fromarray(np.concatenate([view[::3, ::3] for view in begun]))
+    palette = shown.quantize(256, dither=Image.Dither.NONE)
+    drawn = (
+        Image.fromarray(view).quantize(palette=palette, dither=Image.Dither.NONE)
+        for view in chain(begun, frames)
+    )
+    next(drawn).save(
+        path, "GIF", save_all=True, append_images=drawn, duration=round(100 / rate) * 10, loop=0
+    )

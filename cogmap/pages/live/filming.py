@@ -43,7 +43,7 @@ def journeys_filmed(
         raise CogmapError(f"a film of {seconds} s shows nothing; give a positive time")
     session, painting = Session(world, seed=seed), Painting(world)
     rng = np.random.default_rng(seed)
-    rested = 0.0
+    rested = REST
     for _ in range(max(1, round(seconds * RATE))):
         if session.doing is not Doing.GOING:
             rested += 1 / RATE

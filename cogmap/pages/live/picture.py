@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import cv2
 import numpy as np
@@ -134,19 +135,19 @@ class Painting:
         axes.set_axis_off()
         room = scenery(self.world)["room"]
 
-        def lines(found: list[list[list[float]]], colour: str, width: float, style: str = "-") -> None:
+        def lines(found: list[Any], colour: str, width: float, style: str = "-", order: int = 2) -> None:
             drawn = [self._on_plan(np.array(line)) for line in found]
-            axes.add_collection(LineCollection(drawn, colors=colour, linewidths=width, linestyles=style))
+            axes.add_collection(LineCollection(drawn, colors=colour, linewidths=width, linestyles=style, zorder=order))
 
         for odour in room["odours"]:
             lines(odour["lines"], odour["colour"], 1.0)
         lines(room["platform"], SOFT, 0.9, "--")
         for solid in room["solids"]:
             outline = self._on_plan(np.array(solid["outline"]))
-            axes.add_patch(Polygon(outline, facecolor=solid["colour"], edgecolor=INK, linewidth=0.8))
+            axes.add_patch(Polygon(outline, facecolor=solid["colour"], edgecolor=INK, linewidth=0.8, zorder=3))
         for wall in room["walls"]:
-            lines([wall["ends"]], INK, 5.0)
-            lines([wall["ends"]], wall["colour"], 3.6)
+            lines([wall["ends"]], INK, 5.0, order=4)
+            lines([wall["ends"]], wall["colour"], 3.6, order=5)
         titles = [
             (PLAN[0] + 8, 32, f"{room['name']}: where it is (red), where its map believes it is (blue)"),
             (STRIPS[0][0], STRIPS[0][1] - 8, "what it sees"),

@@ -114,11 +114,11 @@ class Session:
 
     def drive(self, forward: float, turn: float) -> None:
         """Drive it by hand until told otherwise: shares of its speed and turn rate, in [−1, 1]."""
-        self._drive = np.clip(np.nan_to_num([forward, turn]), -1, 1)
-        if self._drive.any():
+        asked = np.clip(np.nan_to_num([forward, turn]), -1, 1)
+        if asked.any():
             if self.doing is not Doing.DRIVEN:
                 self._rest()
-            self.doing = Doing.DRIVEN
+            self.doing, self._drive = Doing.DRIVEN, asked
         elif self.doing is Doing.DRIVEN:
             self.doing = Doing.STANDING
 
