@@ -7,10 +7,13 @@ from typing import Annotated
 import numpy as np
 from cyclopts import Parameter
 
-from arena import Arena, Recording
+from arena import Arena, Camera, Recording
+from arena.bodies.catalogue import bodies
+from arena.eye.overhead import Overhead
 from cogmap.commands.acting import _refine, _world
 from cogmap.commands.common import Json, MaybePath, Seed, UserPath, tell
 from cogmap.control import MotorModel
+from cogmap.coordinates import GeneralisedCoordinates
 from cogmap.errors import CogmapError
 from cogmap.experiments.acting.travels import babble
 from cogmap.map.cognitive_map import CognitiveMap
@@ -18,6 +21,7 @@ from cogmap.pages.film import check_film, write_frames
 from cogmap.pages.live.filming import RATE, journeys_filmed
 from cogmap.pages.live.freezing import freeze as frozen
 from cogmap.pages.live.mind import Mind
+from cogmap.pages.live.posture import Mechanism
 from cogmap.pages.live.world import World
 
 
@@ -46,9 +50,10 @@ def _page(
     Parameters
     ----------
     cmap
-        Folder that `cogmap learn --refine` wrote; its places are relaxed first where they are not yet.
+        Folder that `cogmap learn --refine` wrote, whose places are relaxed first where they are not yet; or one
+        of coordinates of an arm (`GeneralisedCoordinates.save`), to bend its joints.
     memory
-        The recording that the map was learnt from: what the explorer remembers.
+        The recording that it was learnt from: what the explorer remembers.
     arena
         A room of the gallery or a TOML file; that of the recording when not given.
     motor
@@ -75,8 +80,10 @@ def _page(
             f"the page needs NiceGUI ({error}); install it: pip install 'cogmap[page]'"
         ) from None
     _check_port(port)
-    world = prepared(cmap, memory, arena, motor, replay or [], seed)
-    serve(world, port=port, show=open_browser)
+    if (cmap / "coordinates.json").is_file():
+        serve(_mechanism(cmap, memory), port=port, show=open_browser)
+    else:
+        serve(prepared(cmap, memory, arena, motor, replay or [], seed), port=port, show=open_browser)
 
 
 def _film(
@@ -142,6 +149,23 @@ def prepared(
     world = World(room, place.camera, place.body, mind, walk, replays=replays)
     world.prepare()
     return world
+
+
+def _mechanism(coordinates: UserPath, memory: UserPath) -> Mechanism:
+    """Load coordinates of a body with joints, and what the recording tells of it."""
+    walk = Recording.open(memory)
+    kinds = {kind.__name__: kind for kind in bodies().values()}
+    try:
+        told = {name: dict(walk.attributes[name]) for name in ("camera", "body")}
+        seen_by, moved = told["camera"].pop("kind"), kinds[told["body"].pop("kind")]
+        room = Arena.parse(walk.attributes["arena"])
+        eye = {"Camera": Camera, "Overhead": Overhead}[seen_by](**told["camera"])
+    except (KeyError, TypeError, ValueError):
+        raise CogmapError(
+            f"{memory} does not tell in which room, by which eye and body it was made; "
+            "give a recording that `cogmap explore --body` wrote"
+        ) from None
+    return Mechanism(room, moved(**told["body"]), eye, GeneralisedCoordinates.load(coordinates), walk)
 
 
 def _say(what: str) -> None:

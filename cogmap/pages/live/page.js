@@ -156,7 +156,7 @@ class Page {
       return this.ruler.metres([event.clientX - box.left, event.clientY - box.top]);
     };
     plan.onpointerdown = (event) => {
-      if (!this.scene) return;
+      if (!this.scene || this.scene.kind === "arm") return;
       plan.setPointerCapture(event.pointerId);
       document.activeElement?.blur();
       const place = at(event), tool = event.shiftKey ? "goal" : this.tool;
@@ -234,7 +234,10 @@ class Page {
   setScene(scene) {
     this.scene = scene;
     this.room = scene.room;
-    this.note.textContent = `${scene.room.name}: click to stand, drag to turn, arrows or WASD to drive`;
+    this.root.classList.toggle("arm", scene.kind === "arm");
+    const names = scene.embedding.colours || ["by heading", "by place"];
+    this.root.querySelectorAll("[data-colour]").forEach((chip, k) => (chip.textContent = names[k]));
+    this.note.textContent = scene.kind === "arm" ? "bend its joints with the sliders" : `${scene.room.name}: click to stand, drag to turn, arrows or WASD to drive`;
     if (scene.fields) {
       this.fields = unpacked(scene.fields.data, Uint8Array);
       this.pick.max = scene.fields.cells - 1;
@@ -268,27 +271,17 @@ class Page {
       const view = frame.near[k];
       image.style.visibility = view ? "visible" : "hidden";
       if (view && image.src !== view.view) { image.src = view.view; waiting.push(image.decode().catch(() => {})); }
-      text.textContent = view ? `from ${view.pose[0].toFixed(2)}, ${view.pose[1].toFixed(2)} m, ${Math.round((view.pose[2] * 180) / Math.PI)}°` : "";
+      if (view?.joints) text.textContent = `joints ${view.joints.map((joint) => joint.toFixed(2)).join(", ")} rad`;
+      else text.textContent = view ? `from ${view.pose[0].toFixed(2)}, ${view.pose[1].toFixed(2)} m, ${Math.round((view.pose[2] * 180) / Math.PI)}°` : "";
     });
-    if (!frame.route.length) this.strip.replaceChildren();
-    const loud = frame.surprised === null ? "" : `most surprising patch ${frame.surprised.toFixed(1)} × usual`;
-    const strange = frame.novelty !== null && frame.novelty > 4 ? " · this looks like nothing it remembers" : "";
-    this.word.textContent = [frame.lights ? loud + strange : "in the dark: the nose tells place, nothing tells heading", this.scene.reason && `it does not dream: ${this.scene.reason}`].filter(Boolean).join(" · ");
-    this.errors.push([frame.errors.m, frame.errors.rad]);
-    if (this.errors.length > KEPT) this.errors.shift();
-    if (known(frame.pose)) {
-      const last = this.trail.at(-1), here = [frame.pose[0], frame.pose[1]];
-      if (last && Math.hypot(last[0] - here[0], last[1] - here[1]) > 0.4) this.trail = [];
-      this.trail.push(here);
-    }
-    if (this.trail.length > 4 * KEPT) this.trail.shift();
+    if (this.scene.kind === "arm") this.word.textContent = `coordinates ${frame.coordinates.map((value) => value.toFixed(2)).join(", ")}`;
+    else this.feel(frame);
     if (frame.point) {
       const last = this.way.at(-1);
       if (last && Math.hypot(...last.map((v, k) => v - frame.point[k])) > 0.3) this.way = [];
       this.way.push(frame.point);
     }
     if (this.way.length > 60) this.way.shift();
-    this.rates = { place: unpacked(frame.place, Uint8Array), heading: unpacked(frame.heading, Uint8Array) };
     await Promise.all(waiting);
     this.paint();
     const now = performance.now();
@@ -302,13 +295,31 @@ class Page {
     }
   }
 
+  // What an explorer knows of where it is, beside the truth.
+  feel(frame) {
+    if (!frame.route.length) this.strip.replaceChildren();
+    const loud = frame.surprised === null ? "" : `most surprising patch ${frame.surprised.toFixed(1)} × usual`;
+    const strange = frame.novelty !== null && frame.novelty > 4 ? " · this looks like nothing it remembers" : "";
+    this.word.textContent = [frame.lights ? loud + strange : "in the dark: the nose tells place, nothing tells heading", this.scene.reason && `it does not dream: ${this.scene.reason}`].filter(Boolean).join(" · ");
+    this.errors.push([frame.errors.m, frame.errors.rad]);
+    if (this.errors.length > KEPT) this.errors.shift();
+    if (known(frame.pose)) {
+      const last = this.trail.at(-1), here = [frame.pose[0], frame.pose[1]];
+      if (last && Math.hypot(last[0] - here[0], last[1] - here[1]) > 0.4) this.trail = [];
+      this.trail.push(here);
+    }
+    if (this.trail.length > 4 * KEPT) this.trail.shift();
+    this.rates = { place: unpacked(frame.place, Uint8Array), heading: unpacked(frame.heading, Uint8Array) };
+  }
+
   paint() {
     if (!this.scene) return;
     this.paintPlan();
+    this.paintCloud();
+    if (this.scene.kind === "arm") return;
     this.paintMosaic();
     this.paintRing();
     this.paintTraces();
-    this.paintCloud();
   }
 
   // What does not change from frame to frame is painted once.
@@ -341,9 +352,9 @@ class Page {
       for (const [a, b, c, d] of ends) { pen.moveTo(...to([a, b])); pen.lineTo(...to([c, d])); }
       pen.stroke();
     };
-    if (shown.has("roadmap")) links(scene.roadmap, "rgba(44, 140, 82, .45)", 1);
-    if (shown.has("metric")) links(scene.metric, "rgba(31, 111, 180, .75)", 1.2);
-    if (shown.has("charts")) for (const [x, y, heading] of scene.charts) {
+    if (shown.has("roadmap") && scene.roadmap) links(scene.roadmap, "rgba(44, 140, 82, .45)", 1);
+    if (shown.has("metric") && scene.metric) links(scene.metric, "rgba(31, 111, 180, .75)", 1.2);
+    if (shown.has("charts") && scene.charts) for (const [x, y, heading] of scene.charts) {
       const [px, py] = to([x, y]);
       pen.strokeStyle = byHeading(heading);
       pen.beginPath();
@@ -414,7 +425,18 @@ class Page {
       pen.lineWidth = 1.5;
       pen.stroke();
     }
-    if (frame) {
+    if (frame?.links) {
+      pen.lineCap = pen.lineJoin = "round";
+      plan.line([frame.links[0][0], ...frame.links.map((link) => link[1])].map(to));
+      pen.strokeStyle = RED;
+      pen.lineWidth = 2 * this.scene.radius * this.ruler.scale;
+      pen.stroke();
+      for (const joint of [frame.links[0][0], ...frame.links.map((link) => link[1])]) {
+        plan.disc(...to(joint), 0.35 * this.scene.radius * this.ruler.scale);
+        pen.fillStyle = "white";
+        pen.fill();
+      }
+    } else if (frame) {
       if (frame.route.length) {
         plan.line(frame.route.map(to));
         pen.strokeStyle = GREEN;
@@ -554,7 +576,8 @@ class Page {
       for (const [k, x, y, depth] of order) {
         const [px, py, heading] = this.looks.subarray(3 * k, 3 * k + 3);
         const [u, v] = [(px - x0) / (x1 - x0), (py - y0) / (y1 - y0)];
-        pen.fillStyle = this.colour === "heading" ? byHeading(heading) : `rgb(${40 + 200 * u} ${60 + 150 * v} ${225 - 190 * u})`;
+        if (this.scene.kind === "arm") pen.fillStyle = byHeading(this.colour === "heading" ? heading : px);
+        else pen.fillStyle = this.colour === "heading" ? byHeading(heading) : `rgb(${40 + 200 * u} ${60 + 150 * v} ${225 - 190 * u})`;
         pen.globalAlpha = 0.75 - 0.35 * Math.max(-1, Math.min(1, depth));
         pen.fillRect(x - 1.2, y - 1.2, 2.4, 2.4);
       }

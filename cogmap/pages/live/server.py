@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any
 
 from nicegui import app, ui
 from nicegui.element import Element
-from nicegui.events import ValueChangeEventArguments
+from nicegui.events import GenericEventArguments, ValueChangeEventArguments
 
 from cogmap.pages.live.own_pages import OwnPagesOnly
 from cogmap.pages.live.player import Player, Update
-from cogmap.pages.live.scenery import scenery
+from cogmap.pages.live.posture import Mechanism, Posture
+from cogmap.pages.live.scenery import Json, scenery
 from cogmap.pages.live.session import Session
 from cogmap.pages.live.world import World
 
@@ -37,45 +40,27 @@ class Scene(Element, component=Path(__file__).with_name("page.js")):
 
 
 class Tab:
-    """One open page: its switches and its player.
+    """One open page: its canvases, and the socket between them and a player.
 
     Parameters
     ----------
-    world
-        What is shown.
-    seed
-        Of the explorer's start.
+    player
+        What plays.
+    scene
+        Gives what does not change.
     """
 
-    def __init__(self, world: World, seed: int) -> None:
-        self.world, self.player = world, Player(Session(world, seed=seed))
+    def __init__(self, player: Player | Posture, scene: Callable[[], Json]) -> None:
+        self.player, self.given = player, scene
         self._ready, self._waiting, self._sent = False, 0, 0.0
         self._last = time.perf_counter()
         self._busy = False
 
     def build(self) -> None:
         """Lay out the switches and the canvases."""
-        do, replays = self.player.do, self.world.replays or {}
         ui.add_css(Path(__file__).with_name("page.css"))
-        with ui.row().classes("cogmap-bar").style("width: 100%; align-items: center; gap: 8px 16px"):
-            ui.label(f"cogmap · {self.world.room.name}").style("font-weight: 600")
-            ui.toggle(TOOLS, value="stand", on_change=lambda e: self.scene.run_method("tool", e.value)).props(
-                "dense no-caps"
-            )
-            ui.switch("lights", value=True, on_change=self._told(lambda s, on: s.light(on=on)))
-            ui.button("stop", on_click=lambda: do(lambda s: s.stop())).props("dense no-caps outline")
-            ui.button("boxes back", on_click=lambda: do(lambda s: s.tidy())).props("dense no-caps outline")
-            if replays:
-                ui.select(
-                    {"": "no replay", **{name: f"replay {name}" for name in replays}},
-                    value="",
-                    on_change=self._told(lambda s, name: s.replayed(name)),
-                ).props("dense options-dense")
-                self.play = ui.switch("play", on_change=self._told(lambda s, on: s.play(on=on)))
-                self.scrubber = ui.slider(min=0, max=1, value=0).style("min-width: 160px; flex: 1")
-                self.scrubber.on("update:model-value", lambda e: do(lambda s: s.scrub(int(e.args))))
-                for shown in (self.play, self.scrubber):
-                    shown.set_visibility(False)
+        with ui.row().style("width: 100%; align-items: center; gap: 8px 16px"):
+            self.switches()
             self.status = ui.label("").style("color: #5d636c").props("role=status")
         self.scene = Scene().style("width: 100%")
         self.scene.on("act", lambda event: self.player.hear(event.args))
@@ -83,11 +68,14 @@ class Tab:
         self.scene.on("drawn", self._has_drawn)
         ui.timer(TICK, self._turn)
 
-    def _told(self, act: Callable[[Session, Any], None]) -> Callable[[ValueChangeEventArguments], None]:
-        return lambda event: self.player.do(lambda session: act(session, event.value))
+    def switches(self) -> None:
+        """Lay out what is switched."""
+
+    def follow(self, shown: Json) -> None:
+        """Let the switches follow what is shown."""
 
     def _begin(self) -> None:
-        self.scene.run_method("scene", scenery(self.world))
+        self.scene.run_method("scene", self.given())
         self._ready, self._waiting, self._sent = True, 0, 0.0
 
     def _has_drawn(self) -> None:
@@ -123,44 +111,127 @@ class Tab:
         told = ": ".join(part for part in (update.frame["doing"], update.frame["said"]) if part)
         if self.status.text != told:
             self.status.text = told
-        replay = update.frame["replay"]
-        if self.world.replays:
-            for shown in (self.play, self.scrubber):
-                shown.set_visibility(bool(replay["name"]))
-            if replay["name"]:
-                self.scrubber.props(f"max={replay['length'] - 1}")
-                self.scrubber.value = replay["at"]
+        self.follow(update.frame)
 
 
-def page_of(world: World) -> Callable[[], None]:
-    """Make the function that lays out a page of a world, for each browser that comes."""
-    seeds = count()
-
-    def page() -> None:
-        Tab(world, next(seeds)).build()
-
-    return page
-
-
-def serve(world: World, *, port: int, show: bool = False) -> None:
-    """Serve pages on this machine alone, until the terminal ends it.
+class ExplorerTab(Tab):
+    """A page with an explorer.
 
     Parameters
     ----------
     world
         What is shown.
+    seed
+        Of the explorer's start.
+    """
+
+    def __init__(self, world: World, seed: int) -> None:
+        super().__init__(Player(Session(world, seed=seed)), lambda: scenery(world))
+        self.world = world
+
+    def switches(self) -> None:
+        """Lay out tools, lamp, buttons and the scrubber."""
+        do, replays = self.player.do, self.world.replays or {}
+        ui.label(f"cogmap · {self.world.room.name}").style("font-weight: 600")
+        ui.toggle(TOOLS, value="stand", on_change=lambda e: self.scene.run_method("tool", e.value)).props(
+            "dense no-caps padding='2px 10px'"
+        )
+        ui.switch("lights", value=True, on_change=self._told(lambda s, on: s.light(on=on)))
+        ui.button("stop", on_click=lambda: do(lambda s: s.stop())).props("dense no-caps outline padding='2px 10px'")
+        ui.button("boxes back", on_click=lambda: do(lambda s: s.tidy())).props(
+            "dense no-caps outline padding='2px 10px'"
+        )
+        if not replays:
+            return
+        self.chosen = ui.select(
+            {"": "no replay", **{name: f"replay {name}" for name in replays}},
+            value="",
+            on_change=self._told(lambda s, name: s.replayed(name) if name != s.replay else None),
+        ).props("dense options-dense")
+        self.play = ui.switch("play", on_change=self._told(lambda s, on: s.play(on=on)))
+        self.scrubber = ui.slider(min=0, max=1, value=0).style("min-width: 160px; flex: 1")
+        self.scrubber.on("update:model-value", lambda e: do(lambda s: s.scrub(int(e.args))))
+        for shown in (self.play, self.scrubber):
+            shown.set_visibility(False)
+
+    def follow(self, shown: Json) -> None:
+        """Let the scrubber follow the replay, which ends when the explorer is put elsewhere."""
+        if not self.world.replays:
+            return
+        replay = shown["replay"]
+        for part in (self.play, self.scrubber):
+            part.set_visibility(bool(replay["name"]))
+        self.chosen.value = replay["name"]
+        if replay["name"]:
+            self.scrubber.props(f"max={replay['length'] - 1}")
+            self.scrubber.value = replay["at"]
+        else:
+            self.play.value = False
+
+    def _told(self, act: Callable[[Session, Any], None]) -> Callable[[ValueChangeEventArguments], None]:
+        return lambda event: self.player.do(lambda session: act(session, event.value))
+
+
+class PostureTab(Tab):
+    """A page with an arm.
+
+    Parameters
+    ----------
+    mechanism
+        What is shown.
+    """
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.posture = Posture(mechanism)
+        super().__init__(self.posture, lambda: mechanism.scenery)
+
+    def switches(self) -> None:
+        """Lay out a slider a joint."""
+        mechanism = self.posture.mechanism
+        ui.label(f"cogmap · {type(mechanism.body).__name__.lower()}").style("font-weight: 600")
+        for index, axis in enumerate(mechanism.body.axes):
+            low, high = axis.limits or (-math.pi, math.pi)
+            ui.label(axis.name.replace("_", " "))
+            slider = ui.slider(min=low, max=high, step=0.01, value=float(self.posture.joints[index]))
+            slider.style("width: 220px").props("label")
+            slider.on("update:model-value", partial(self._bent, index))
+
+    def _bent(self, index: int, event: GenericEventArguments) -> None:
+        self.posture.bend(index, float(event.args))
+
+
+def page_of(shown: World | Mechanism) -> Callable[[], None]:
+    """Make the function that lays out a page, for each browser that comes."""
+    seeds = count()
+
+    def page() -> None:
+        tab = PostureTab(shown) if isinstance(shown, Mechanism) else ExplorerTab(shown, next(seeds))
+        tab.build()
+
+    return page
+
+
+def serve(shown: World | Mechanism, *, port: int, show: bool = False) -> None:
+    """Serve pages on this machine alone, until the terminal ends it.
+
+    Parameters
+    ----------
+    shown
+        An explorer's world, or an arm.
     port
         Of 127.0.0.1.
     show
         Whether to open a browser.
     """
     app.add_middleware(OwnPagesOnly, port=port)
-    app.on_startup(lambda: sys.stderr.write(f"cogmap: the page is at http://127.0.0.1:{port}; Ctrl-C ends it\n"))
+    app.on_startup(
+        lambda: sys.stderr.write(f"cogmap: the page is at http://127.0.0.1:{port}; Ctrl-C ends it\n")
+    )
     ui.run(
-        page_of(world),
+        page_of(shown),
         host="127.0.0.1",
         port=port,
-        title=f"cogmap: {world.room.name}",
+        title=f"cogmap: {shown.room.name}",
         reload=False,
         show=show,
         tailwind=False,
