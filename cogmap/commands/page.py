@@ -2,6 +2,8 @@
 
 import socket
 import sys
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
@@ -44,14 +46,14 @@ def _page(
     The page is served on this machine alone. Needs the extra `page`: `pip install 'cogmap[page]'`.
 
     Examples: `cogmap page map --memory walk.zarr --arena furnished`; with the motor model that `cogmap reach`
-    left: `cogmap page map --memory walk.zarr --motor reached/motor --replay rat.zarr`; as one file to mail, which
-    needs no server: `cogmap page map --memory walk.zarr --freeze page.html`.
+    left: `cogmap page map --memory walk.zarr --motor reached/motor --replay rat.zarr`; as one file to mail,
+    which needs no server: `cogmap page map --memory walk.zarr --freeze page.html`.
 
     Parameters
     ----------
     cmap
-        Folder that `cogmap learn --refine` wrote, whose places are relaxed first where they are not yet; or one
-        of coordinates of an arm (`GeneralisedCoordinates.save`), to bend its joints.
+        Folder that `cogmap learn --refine` wrote, whose places are relaxed first where they are not yet; or
+        one of coordinates of an arm (`GeneralisedCoordinates.save`), to bend its joints.
     memory
         The recording that it was learnt from: what the explorer remembers.
     arena
@@ -70,7 +72,8 @@ def _page(
         Open the page in a browser at once.
     """
     if freeze is not None:
-        written = frozen(prepared(cmap, memory, arena, None, [], seed, acts=False), freeze, poses=poses, seed=seed)
+        world = _prepared(cmap, memory, arena, seed=seed, acts=False)
+        written = frozen(world, freeze, poses=poses, seed=seed)
         tell({"page": str(written), "bytes": written.stat().st_size}, as_json=False)
         return
     try:
@@ -83,7 +86,8 @@ def _page(
     if (cmap / "coordinates.json").is_file():
         serve(_mechanism(cmap, memory), port=port, show=open_browser)
     else:
-        serve(prepared(cmap, memory, arena, motor, replay or [], seed), port=port, show=open_browser)
+        world = _prepared(cmap, memory, arena, motor=motor, replay=replay or (), seed=seed)
+        serve(world, port=port, show=open_browser)
 
 
 def _film(
@@ -119,19 +123,19 @@ def _film(
         How long it is.
     """
     check_film(out)
-    world = prepared(cmap, memory, arena, motor, [], seed)
+    world = _prepared(cmap, memory, arena, motor=motor, seed=seed)
     write_frames(journeys_filmed(world, seconds=seconds, seed=seed), out, rate=RATE)
     tell({"film": str(out), "seconds": seconds, "frames_per_second": RATE}, as_json=as_json)
 
 
-def prepared(
-    cmap: UserPath,
-    memory: UserPath,
+def _prepared(
+    cmap: Path,
+    memory: Path,
     arena: str | None,
-    motor: MaybePath,
-    replay: list[UserPath],
-    seed: int,
     *,
+    motor: Path | None = None,
+    replay: Sequence[Path] = (),
+    seed: int,
     acts: bool = True,
 ) -> World:
     """Load a map with what it remembers, and make all that a first page would wait for."""
@@ -151,7 +155,7 @@ def prepared(
     return world
 
 
-def _mechanism(coordinates: UserPath, memory: UserPath) -> Mechanism:
+def _mechanism(coordinates: Path, memory: Path) -> Mechanism:
     """Load coordinates of a body with joints, and what the recording tells of it."""
     walk = Recording.open(memory)
     kinds = {kind.__name__: kind for kind in bodies().values()}

@@ -24,7 +24,7 @@ FIRST = 12
 
 
 def check_film(out: str | Path) -> Path:
-    """Give the path of a film to write, or raise unless it is new and ends in .mp4 or .gif, or is a folder."""
+    """Give the path of a film to write; raise unless it is new, and an .mp4, a .gif or a folder."""
     out = user_path(out)
     if out.suffix not in KINDS:
         raise CogmapError(
@@ -94,6 +94,4 @@ def _write_gif(frames: Iterator[Frame], path: Path, rate: float) -> None:
         Image.fromarray(view).quantize(palette=palette, dither=Image.Dither.NONE)
         for view in chain(begun, frames)
     )
-    next(drawn).save(
-        path, "GIF", save_all=True, append_images=drawn, duration=round(100 / rate) * 10, loop=0
-    )
+    next(drawn).save(path, "GIF", save_all=True, append_images=drawn, duration=round(100 / rate) * 10, loop=0)

@@ -1,1 +1,1 @@
-"""The page: an explorer that one can watch look, dream and go, live in a browser, frozen in a file, or filmed."""
+"""The page: an explorer that looks, dreams and goes, live in a browser, frozen in a file, or filmed."""

@@ -13,6 +13,7 @@ from cogmap.pages.live.scenery import Json
 from cogmap.pages.live.session import Look, Session
 from cogmap.pages.live.world import World
 
+
 def frame(session: Session, look: Look) -> Json:
     """Give all that changes from step to step."""
     activity, thought = look.thought.activity, look.thought

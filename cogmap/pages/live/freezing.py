@@ -19,6 +19,8 @@ from cogmap.pages.live.world import World
 
 LARGEST = 20_000_000
 """Bytes of a file that can be mailed."""
+POLICY = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+"""What a browser lets the file ask for: nothing."""
 HEADINGS = 8
 """Directions looked into from every place."""
 
@@ -51,7 +53,8 @@ def freeze(world: World, out: str | Path, *, poses: int = 240, seed: int = 0) ->
     text = _page(world, [_frozen(session, pose) for pose in sampled_poses(world, poses // HEADINGS)])
     if len(text.encode()) > LARGEST:
         raise CogmapError(
-            f"the page would have {len(text.encode()) / 1e6:.0f} MB, more than 20; give fewer than {poses} poses"
+            f"the page would have {len(text.encode()) / 1e6:.0f} MB, more than 20; "
+            f"give fewer than {poses} poses"
         )
     with atomic_write(out) as path:
         path.write_text(text, encoding="utf-8")
@@ -96,7 +99,7 @@ def _page(world: World, frames: list[Json]) -> str:
 <head>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'">
+<meta http-equiv="Content-Security-Policy" content="{POLICY}">
 <title>{title}</title>
 <link rel="icon" href="data:,">
 <style>

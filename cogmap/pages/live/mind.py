@@ -90,7 +90,7 @@ class Mind:
 
     @cached_property
     def places(self) -> RememberedPlaces:
-        """Where all that is remembered was seen: as the map was refined to, if by these views, or perceived."""
+        """Where all that is remembered was seen: as the map was refined to by these views, or perceived."""
         relaxed = self.cmap.relaxed_places_
         if relaxed is not None and len(relaxed.places_) == self.memory.shape[0]:
             known = relaxed.places_.astype(np.float64)

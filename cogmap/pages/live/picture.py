@@ -137,14 +137,18 @@ class Painting:
 
         def lines(found: list[Any], colour: str, width: float, style: str = "-", order: int = 2) -> None:
             drawn = [self._on_plan(np.array(line)) for line in found]
-            axes.add_collection(LineCollection(drawn, colors=colour, linewidths=width, linestyles=style, zorder=order))
+            axes.add_collection(
+                LineCollection(drawn, colors=colour, linewidths=width, linestyles=style, zorder=order)
+            )
 
         for odour in room["odours"]:
             lines(odour["lines"], odour["colour"], 1.0)
         lines(room["platform"], SOFT, 0.9, "--")
         for solid in room["solids"]:
             outline = self._on_plan(np.array(solid["outline"]))
-            axes.add_patch(Polygon(outline, facecolor=solid["colour"], edgecolor=INK, linewidth=0.8, zorder=3))
+            axes.add_patch(
+                Polygon(outline, facecolor=solid["colour"], edgecolor=INK, linewidth=0.8, zorder=3)
+            )
         for wall in room["walls"]:
             lines([wall["ends"]], INK, 5.0, order=4)
             lines([wall["ends"]], wall["colour"], 3.6, order=5)
@@ -178,4 +182,12 @@ def _polyline(
     picture: np.ndarray, points: Float[np.ndarray, "points 2"], colour: str | np.ndarray, width: int
 ) -> None:
     drawn = np.rint(points * 2**_SHIFT).astype(np.int32)
-    cv2.polylines(picture, [drawn], isClosed=False, color=_rgb(colour), thickness=width, lineType=cv2.LINE_AA, shift=_SHIFT)
+    cv2.polylines(
+        picture,
+        [drawn],
+        isClosed=False,
+        color=_rgb(colour),
+        thickness=width,
+        lineType=cv2.LINE_AA,
+        shift=_SHIFT,
+    )

@@ -56,7 +56,7 @@ class Player:
             self.do(lambda _: self._heard(number))
 
     def turn(self, seconds: float, *, anew: bool = False) -> Update | None:
-        """Do what waits, let time (s) pass, and give what has changed; all of it when `anew`, else maybe None."""
+        """Do what waits, let time (s) pass, and give what has changed, or all of it when `anew`."""
         session = self.session
         while self._acts:
             self._acts.popleft()(session)
@@ -81,7 +81,7 @@ class Player:
         self.session.version += 1
 
 
-def understood(said: Any) -> Act | None:  # noqa: PLR0911
+def understood(said: Any) -> Act | None:
     """Read what a browser says: stand, turn, drive, set a goal, move a box."""
     if not isinstance(said, Mapping):
         return None

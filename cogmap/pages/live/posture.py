@@ -1,4 +1,4 @@
-"""The posture of an arm: joints by hand, what its eye sees, and where that lies among all it can look like."""
+"""The posture of an arm: joints by hand, what its eye sees, and where that lies among all its views."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Mechanism:
         return np.asarray(self.walk.require("joints"), np.float64)[self.coordinates.indices_]
 
     def drawn(self, found: Float[np.ndarray, "views coordinates"]) -> Float[np.ndarray, "views 3"]:
-        """Put coordinates into space: two phases onto a torus, one with a height onto a cylinder, else as is."""
+        """Put coordinates into space: two phases onto a torus, one onto a cylinder, others as they are."""
         loops = self.coordinates.loops_
         if loops >= 2:
             turned, bent = found[:, 0], found[:, 1]
@@ -84,7 +84,10 @@ class Mechanism:
             "embedding": {
                 "points": packed(self.drawn(self.coordinates.coordinates_).astype(np.float32)),
                 "poses": packed(looks.astype(np.float32)),
-                "colours": [f"by {self.body.axes[0].name}", f"by {self.body.axes[min(1, self.joints.shape[1] - 1)].name}"],
+                "colours": [
+                    f"by {self.body.axes[0].name}",
+                    f"by {self.body.axes[min(1, self.joints.shape[1] - 1)].name}",
+                ],
             },
             "reason": self.coordinates.reason_,
         }

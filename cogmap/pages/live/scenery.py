@@ -57,7 +57,11 @@ def room_lines(room: Arena) -> Json:
         "platform": [_rounded(ring.coords) for ring in shapely.get_parts(room.walkable.boundary)],
         "walls": [{"ends": [wall.start, wall.end], "colour": _colour(wall.material)} for wall in room.walls],
         "solids": [
-            {"outline": _rounded(solid.outline), "colour": _colour(solid.sides[0]), "box": k < len(room.boxes)}
+            {
+                "outline": _rounded(solid.outline),
+                "colour": _colour(solid.sides[0]),
+                "box": k < len(room.boxes),
+            }
             for k, solid in enumerate(room.solids)
         ],
         "sources": [source.position for source in room.sources],

@@ -137,7 +137,9 @@ class ExplorerTab(Tab):
             "dense no-caps padding='2px 10px'"
         )
         ui.switch("lights", value=True, on_change=self._told(lambda s, on: s.light(on=on)))
-        ui.button("stop", on_click=lambda: do(lambda s: s.stop())).props("dense no-caps outline padding='2px 10px'")
+        ui.button("stop", on_click=lambda: do(lambda s: s.stop())).props(
+            "dense no-caps outline padding='2px 10px'"
+        )
         ui.button("boxes back", on_click=lambda: do(lambda s: s.tidy())).props(
             "dense no-caps outline padding='2px 10px'"
         )

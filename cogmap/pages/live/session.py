@@ -38,7 +38,7 @@ class Doing(StrEnum):
 
 @dataclass(frozen=True)
 class Look:
-    """All that a page shows of a moment. The truth in it, `pose` and what is laid beside it, is for display."""
+    """All that a page shows of a moment. The truth in it, `pose` and what is beside it, is to be drawn."""
 
     pose: Float[np.ndarray, "3"] | None
     """Where the explorer is (m, m, rad); None in a replay without poses."""
@@ -58,7 +58,7 @@ class Session:
     Parameters
     ----------
     world
-        Shared by all sessions, which change nothing of it: boxes that one moves stay where they are for others.
+        Shared by all sessions, which change nothing of it: a box that one moves stays for the others.
     seed
         Of the start, slip and the noise of eye and nose.
 
@@ -285,13 +285,13 @@ class Session:
                 with self.world.lock:
                     command = self._policy(sensed)
                 if command is None:
-                    return self._arrive(self._policy)
+                    self._arrive(self._policy)
+                    return
                 self._drive, self._since = np.asarray(command, np.float64), 0.0
             passed = min(seconds, DECISION - self._since)
             self._act(self._drive, passed)
             self._since += passed
             seconds -= passed
-        return None
 
     def _arrive(self, policy: Reaching) -> None:
         """Say how a journey ended; goal and route stay to be seen."""

@@ -88,8 +88,7 @@ class World:
 
     @cached_property
     def full_rates(self) -> tuple[float, float]:
-        """Rates (Hz) of a place cell and of a heading cell that are drawn brightest: of the strongest of each
-        in most views."""
+        """Rates (Hz) of place and heading cells that are drawn brightest: of the strongest in most views."""
         seen = self.mind.remembered
         strongest = (np.nan_to_num(rates).max(axis=1, initial=0.0) for rates in (seen.place, seen.heading))
         place, heading = (max(float(np.median(rates)), 1e-6) for rates in strongest)

@@ -19,7 +19,7 @@ RED = (200, 69, 45)
 def where(picture: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
     left, top, right, bottom = PLAN
     hits = (np.abs(picture[top:bottom, left:right].astype(int) - colour) < 12).all(axis=2)
-    return np.argwhere(hits).mean(axis=0)[::-1] + (left, top)
+    return np.add(np.argwhere(hits).mean(axis=0)[::-1], (left, top))
 
 
 def test_a_picture_shows_the_explorer_where_it_is_and_what_it_sees(session: Session) -> None:

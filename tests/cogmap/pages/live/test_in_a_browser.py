@@ -24,13 +24,17 @@ from cogmap.pages.live.world import World
 pytest.importorskip("nicegui")
 webdriver = pytest.importorskip("selenium.webdriver")
 DRIVER = shutil.which("chromedriver")
-pytestmark = pytest.mark.skipif(DRIVER is None, reason="there is no chromedriver, as of Debian's chromium-driver")
+pytestmark = pytest.mark.skipif(
+    DRIVER is None, reason="there is no chromedriver, as of Debian's chromium-driver"
+)
 
 HOSTILE = """<!doctype html><title>waiting</title><script>
 const told = [];
 const tries = [
-  fetch("http://127.0.0.1:PORT/").then((r) => r.text()).then((t) => told.push("fetch " + t.length)).catch(() => {}),
-  fetch("http://127.0.0.1:PORT/_nicegui_ws/socket.io/?EIO=4&transport=polling").then(() => told.push("poll")).catch(() => {}),
+  fetch("http://127.0.0.1:PORT/").then((r) => r.text()).then((t) => told.push("fetch " + t.length))
+    .catch(() => {}),
+  fetch("http://127.0.0.1:PORT/_nicegui_ws/socket.io/?EIO=4&transport=polling")
+    .then(() => told.push("poll")).catch(() => {}),
   new Promise((done) => {
     const socket = new WebSocket("ws://127.0.0.1:PORT/_nicegui_ws/socket.io/?EIO=4&transport=websocket");
     socket.onopen = () => { told.push("socket"); done(); };
@@ -73,7 +77,15 @@ def served(refined: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[S
     refined.cmap.save(folder / "map")
     refined.walk.save(folder / "walk.zarr")
     refined.motor.save(folder / "motor")
-    command = [sys.executable, "-m", "cogmap", "page", str(folder / "map"), "--memory", str(folder / "walk.zarr")]
+    command = [
+        sys.executable,
+        "-m",
+        "cogmap",
+        "page",
+        str(folder / "map"),
+        "--memory",
+        str(folder / "walk.zarr"),
+    ]
     command += ["--arena", "open_field", "--motor", str(folder / "motor"), "--port", str(port)]
     quiet = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "NICEGUI"))}
     with subprocess.Popen(command, env=quiet, stderr=subprocess.PIPE) as process:
@@ -88,7 +100,13 @@ def served(refined: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[S
 @pytest.fixture
 def browser() -> Iterator[Any]:
     options = webdriver.ChromeOptions()
-    for flag in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--disable-gpu", "--window-size=1400,1300"):
+    for flag in (
+        "--headless=new",
+        "--no-sandbox",
+        "--disable-dev-shm-usage",
+        "--disable-gpu",
+        "--window-size=1400,1300",
+    ):
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
     driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(DRIVER))
@@ -137,7 +155,9 @@ def test_clicks_keys_and_a_whole_journey(served: Served, browser: Any) -> None:
     mouse().key_up("w").perform()
     until(lambda: ask(browser, "frame.doing") == "standing")
     shift = webdriver.Keys.SHIFT
-    goal = mouse().key_down(shift).move_to_element_with_offset(plan, *at(browser, (1.0, 0.5))).click_and_hold()
+    goal = (
+        mouse().key_down(shift).move_to_element_with_offset(plan, *at(browser, (1.0, 0.5))).click_and_hold()
+    )
     goal.move_by_offset(0, -40).release().key_up(shift).perform()
     until(lambda: ask(browser, "frame.doing") == "going")
     until(lambda: ask(browser, "frame.doing") == "standing", 120)
@@ -160,11 +180,15 @@ def test_nothing_is_wider_than_the_screen(served: Served, browser: Any, width: i
 def test_two_pages_at_once_do_not_share_an_explorer(served: Served, browser: Any) -> None:
     plan = opened(browser, served.url)
     first = browser.current_window_handle
-    webdriver.ActionChains(browser).move_to_element_with_offset(plan, *at(browser, (0.5, 0.5))).click().perform()
+    webdriver.ActionChains(browser).move_to_element_with_offset(
+        plan, *at(browser, (0.5, 0.5))
+    ).click().perform()
     until(lambda: np.allclose(ask(browser, "frame.pose")[:2], (0.5, 0.5), atol=0.03))
     browser.switch_to.new_window("tab")
     plan = opened(browser, served.url)
-    webdriver.ActionChains(browser).move_to_element_with_offset(plan, *at(browser, (-0.5, -0.5))).click().perform()
+    webdriver.ActionChains(browser).move_to_element_with_offset(
+        plan, *at(browser, (-0.5, -0.5))
+    ).click().perform()
     until(lambda: np.allclose(ask(browser, "frame.pose")[:2], (-0.5, -0.5), atol=0.03))
     browser.switch_to.window(first)
     np.testing.assert_allclose(ask(browser, "frame.pose")[:2], (0.5, 0.5), atol=0.03)
@@ -188,7 +212,9 @@ def test_a_frozen_page_works_from_the_disk(world: World, browser: Any, tmp_path:
     page = freeze(world, tmp_path / "page.html", poses=16)
     plan = opened(browser, page.as_uri())
     poses = [tuple(pose) for pose in ask(browser, "scene && [window.cogmap.frame.pose]")]
-    webdriver.ActionChains(browser).move_to_element_with_offset(plan, *at(browser, (1.8, 1.3))).click().perform()
+    webdriver.ActionChains(browser).move_to_element_with_offset(
+        plan, *at(browser, (1.8, 1.3))
+    ).click().perform()
     until(lambda: tuple(ask(browser, "frame.pose")) not in poses)
     assert browser.get_log("browser") == []
     assert {url for url in requests(browser) if not url.startswith(("data:", "blob:"))} == {page.as_uri()}
@@ -197,7 +223,8 @@ def test_a_frozen_page_works_from_the_disk(world: World, browser: Any, tmp_path:
 def test_the_server_ends_with_its_terminal(served: Served) -> None:
     served.process.send_signal(signal.SIGHUP)
     served.process.wait(20)
-    with pytest.raises(OSError, match="refused"), socket.create_connection(
-        ("127.0.0.1", int(served.url.split(":")[-1].strip("/"))), timeout=2
+    with (
+        pytest.raises(OSError, match="refused"),
+        socket.create_connection(("127.0.0.1", int(served.url.split(":")[-1].strip("/"))), timeout=2),
     ):
         pass

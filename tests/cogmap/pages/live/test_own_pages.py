@@ -37,7 +37,12 @@ def knock(kind: str, **headers: str) -> list[dict]:
         {"host": HOST},
         {"host": "localhost:8080", "origin": "http://localhost:8080"},
         {"host": HOST, "sec_fetch_site": "same-origin", "sec_fetch_mode": "cors"},
-        {"host": HOST, "sec_fetch_site": "cross-site", "sec_fetch_mode": "navigate", "sec_fetch_dest": "document"},
+        {
+            "host": HOST,
+            "sec_fetch_site": "cross-site",
+            "sec_fetch_mode": "navigate",
+            "sec_fetch_dest": "document",
+        },
     ],
 )
 def test_its_own_page_gets_in_and_into_no_frame(headers: dict[str, str]) -> None:
@@ -55,9 +60,19 @@ def test_its_own_page_gets_in_and_into_no_frame(headers: dict[str, str]) -> None
         {"host": HOST, "origin": "http://evil.example"},
         {"host": HOST, "origin": "null"},
         {"host": HOST, "origin": "http://localhost:8080"},
-        {"host": HOST, "sec_fetch_site": "cross-site", "sec_fetch_mode": "no-cors", "sec_fetch_dest": "script"},
+        {
+            "host": HOST,
+            "sec_fetch_site": "cross-site",
+            "sec_fetch_mode": "no-cors",
+            "sec_fetch_dest": "script",
+        },
         {"host": HOST, "sec_fetch_site": "same-site", "sec_fetch_mode": "cors"},
-        {"host": HOST, "sec_fetch_site": "cross-site", "sec_fetch_mode": "navigate", "sec_fetch_dest": "iframe"},
+        {
+            "host": HOST,
+            "sec_fetch_site": "cross-site",
+            "sec_fetch_mode": "navigate",
+            "sec_fetch_dest": "iframe",
+        },
     ],
 )
 def test_another_page_gets_nothing(headers: dict[str, str]) -> None:
@@ -69,5 +84,9 @@ def test_another_page_gets_nothing(headers: dict[str, str]) -> None:
 def test_a_socket_opens_to_its_own_page_alone() -> None:
     own = knock("websocket", host=HOST, origin=f"http://{HOST}")
     assert own == [{"type": "websocket.accept"}]
-    for headers in ({"host": HOST}, {"host": HOST, "origin": "http://evil.example"}, {"host": HOST, "origin": "null"}):
+    for headers in (
+        {"host": HOST},
+        {"host": HOST, "origin": "http://evil.example"},
+        {"host": HOST, "origin": "null"},
+    ):
         assert knock("websocket", **headers) == [{"type": "websocket.close", "code": 1008}]

@@ -45,7 +45,7 @@ def test_two_pages_at_once_have_an_explorer_each(world: World, monkeypatch: pyte
                 scenes.append(scene)
             first, second = (frames(told, scene)[0]["pose"] for scene in scenes)
             assert first != second
-            assert [args[1] for args in told if args[0] == id(scenes[0])][0] == "scene"
+            assert next(args[1] for args in told if args[0] == id(scenes[0])) == "scene"
             await user.should_see("standing")
 
     asyncio.run(visit())

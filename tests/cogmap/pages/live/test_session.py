@@ -87,7 +87,11 @@ def test_the_policy_is_asked_once_a_decision_and_told_views_and_odours_alone(ses
 
 
 def test_the_mind_is_handed_no_pose() -> None:
-    assert "arena" not in {line.split()[1].split(".")[0] for line in inspect.getsource(mind_module).splitlines() if line.startswith(("from ", "import "))}
+    assert "arena" not in {
+        line.split()[1].split(".")[0]
+        for line in inspect.getsource(mind_module).splitlines()
+        if line.startswith(("from ", "import "))
+    }
     for name in ("look", "sniff", "way"):
         assert "pose" not in str(inspect.signature(getattr(Mind, name)))
 
