@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from cogmap.pages.live.freezing import freeze
+from cogmap.pages.live.freezing import HEADINGS, freeze, sampled_poses
 from cogmap.pages.live.world import World
 
 pytest.importorskip("nicegui")
@@ -130,7 +130,7 @@ def at(browser: Any, place: tuple[float, float]) -> tuple[int, int]:
         browser.execute_script(
             "const { ruler, plan } = window.cogmap, [x, y] = ruler.pixels(arguments[0]);"
             "return [Math.round(x - plan.width / 2), Math.round(y - plan.height / 2)]",
-            list(place),
+            [float(part) for part in place],
         )
     )
 
@@ -211,11 +211,10 @@ def test_a_hostile_page_gets_nothing(served: Served, browser: Any, tmp_path: Pat
 def test_a_frozen_page_works_from_the_disk(world: World, browser: Any, tmp_path: Path) -> None:
     page = freeze(world, tmp_path / "page.html", poses=16)
     plan = opened(browser, page.as_uri())
-    poses = [tuple(pose) for pose in ask(browser, "scene && [window.cogmap.frame.pose]")]
-    webdriver.ActionChains(browser).move_to_element_with_offset(
-        plan, *at(browser, (1.8, 1.3))
-    ).click().perform()
-    until(lambda: tuple(ask(browser, "frame.pose")) not in poses)
+    first, second = sampled_poses(world, 2)[[0, HEADINGS], :2]
+    np.testing.assert_allclose(ask(browser, "frame.pose")[:2], first, atol=0.01)
+    webdriver.ActionChains(browser).move_to_element_with_offset(plan, *at(browser, second)).click().perform()
+    until(lambda: np.allclose(ask(browser, "frame.pose")[:2], second, atol=0.01))
     assert browser.get_log("browser") == []
     assert {url for url in requests(browser) if not url.startswith(("data:", "blob:"))} == {page.as_uri()}
 
