@@ -235,6 +235,7 @@ class Page {
     this.scene = scene;
     this.room = scene.room;
     this.root.classList.toggle("arm", scene.kind === "arm");
+    if (scene.kind === "arm") this.root.querySelector(".eyes h2").firstChild.textContent = "What its eye sees";
     const names = scene.embedding.colours || ["by heading", "by place"];
     this.root.querySelectorAll("[data-colour]").forEach((chip, k) => (chip.textContent = names[k]));
     this.note.textContent = scene.kind === "arm" ? "bend its joints with the sliders" : `${scene.room.name}: click to stand, drag to turn, arrows or WASD to drive`;

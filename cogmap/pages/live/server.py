@@ -30,6 +30,8 @@ PATIENCE = 1.0
 """Time (s) after which a browser that has not drawn what it was sent is sent more."""
 AHEAD = 2
 """Frames that a browser may not have drawn yet: the next is thought while the last is drawn."""
+HISTORY = 20
+"""Messages that are kept for a browser that comes back, at most a megabyte."""
 TOOLS = {"stand": "stand", "goal": "goal", "box": "move a box"}
 THINKER = ThreadPoolExecutor(1, thread_name_prefix="cogmap-page")
 """One thread thinks for all pages, in turn: they share a mind, and one core is enough."""
@@ -238,6 +240,6 @@ def serve(shown: World | Mechanism, *, port: int, show: bool = False) -> None:
         show=show,
         tailwind=False,
         show_welcome_message=False,
-        message_history_length=0,
+        message_history_length=HISTORY,
         favicon="🧭",
     )
