@@ -182,7 +182,8 @@ class Mind:
         position, phase = dream.perceive(np.stack([view, goal]))
         route = dream.ways.plan(position[0], position[1])
         poses = stroll(route, step=dream.pace / 2, turn=TURN, start=float(phase[0]), end=float(phase[1]))
-        return poses[np.unique(np.linspace(0, len(poses) - 1, min(frames, len(poses))).astype(int))]
+        chosen = np.unique(np.linspace(0, len(poses) - 1, min(frames, len(poses))).astype(int))
+        return np.asarray(poses[chosen])
 
     def dream(self, pose: Float[np.ndarray, "3"]) -> UInt8[np.ndarray, "height width 3"]:
         """Imagine the view from a pose in the map's frame."""
@@ -194,7 +195,7 @@ class Mind:
         phase: float,
         seen: UInt8[np.ndarray, "height width 3"] | None,
     ) -> Dreamt:
-        sources = self._painter.places.sources(np.float64(position)[None], self.imagination.sources)
+        sources = self._painter.places.sources(position[None].astype(np.float64), self.imagination.sources)
         facing = np.array([phase], np.float64)
         with one_thread():
             painted = self._painter.painted(sources, facing)(0)

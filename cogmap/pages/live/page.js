@@ -300,7 +300,7 @@ class Page {
   feel(frame) {
     if (!frame.route.length) this.strip.replaceChildren();
     const loud = frame.surprised === null ? "" : `most surprising patch ${frame.surprised.toFixed(1)} × usual`;
-    const strange = frame.novelty !== null && frame.novelty > 4 ? " · this looks like nothing it remembers" : "";
+    const strange = frame.novelty !== null && frame.novelty > 4 ? ` · ${frame.novelty.toFixed(1)} × as unlike what it remembers as usual` : "";
     this.word.textContent = [frame.lights ? loud + strange : "in the dark: the nose tells place, nothing tells heading", this.scene.reason && `it does not dream: ${this.scene.reason}`].filter(Boolean).join(" · ");
     this.errors.push([frame.errors.m, frame.errors.rad]);
     if (this.errors.length > KEPT) this.errors.shift();

@@ -116,14 +116,15 @@ class Painting:
         x0, y0, x1, y1 = self.world.room.bounds
         left, top, right, bottom = PLAN
         middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2])
-        return (points - middle) * [self._scale, -self._scale] + [(left + right) / 2, (top + bottom) / 2]
+        there = (points - middle) * [self._scale, -self._scale]
+        return np.add(there, [(left + right) / 2, (top + bottom) / 2])
 
     def _in_cells(self, points: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, "points 2"]:
         x0, y0, x1, y1 = self.world.room.walkable.bounds
         left, top, right, bottom = CELLS
         scale = min((right - left) / (x1 - x0), (bottom - top) / (y1 - y0))
         middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2])
-        return (points - middle) * [scale, -scale] + [(left + right) / 2, (top + bottom) / 2]
+        return np.asarray((points - middle) * [scale, -scale] + [(left + right) / 2, (top + bottom) / 2])
 
     @cached_property
     def _still(self) -> UInt8[np.ndarray, "height width 3"]:
@@ -162,8 +163,8 @@ class Painting:
         ]
         for x, y, said in titles:
             axes.text(x, y, said, fontsize=9.5, color=INK, va="baseline", parse_math=False)
-        canvas.draw()
-        return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+        canvas.draw()  # type: ignore[no-untyped-call]
+        return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()  # type: ignore[no-untyped-call]
 
 
 def _rgb(colour: str | np.ndarray) -> tuple[float, float, float]:

@@ -56,7 +56,8 @@ class Mechanism:
     @cached_property
     def joints(self) -> Float[np.ndarray, "kept axes"]:
         """Where the body was on its axes at the views that are kept: the truth, for the colours."""
-        return np.asarray(self.walk.require("joints"), np.float64)[self.coordinates.indices_]
+        joints = np.asarray(self.walk.require("joints"), np.float64)
+        return np.asarray(joints[self.coordinates.indices_])
 
     def drawn(self, found: Float[np.ndarray, "views coordinates"]) -> Float[np.ndarray, "views 3"]:
         """Put coordinates into space: two phases onto a torus, one onto a cylinder, others as they are."""

@@ -172,7 +172,7 @@ class ExplorerTab(Tab):
         else:
             self.play.value = False
 
-    def _told(self, act: Callable[[Session, Any], None]) -> Callable[[ValueChangeEventArguments], None]:
+    def _told(self, act: Callable[[Session, Any], None]) -> Callable[[ValueChangeEventArguments[Any]], None]:
         return lambda event: self.player.do(lambda session: act(session, event.value))
 
 

@@ -139,13 +139,17 @@ class Session:
         with self.world.lock:
             try:
                 self._policy = self.world.mind.reacher.towards(image)
-                way = self.world.mind.way(self._seen(self.room, self.pose), image, ROUTE)
             except CogmapError as error:
                 self.said = str(error)
                 return
-        self.goal, self.route = pose, self.world.in_room(way[:, :2])
-        self.dreamt, self._to_dream = [], deque(way)
-        self.doing, self._since, self.said = Doing.GOING, DECISION, "on its way"
+            self.goal, self.doing, self._since, self.said = pose, Doing.GOING, DECISION, "on its way"
+            try:
+                way = self.world.mind.way(self._sense()["view"][0], image, ROUTE)
+            except CogmapError as error:
+                # what goes bridges unknown views, or says itself that no way is known
+                self.said = f"on its way, and does not dream it: {error}"
+                return
+        self.route, self._to_dream = self.world.in_room(way[:, :2]), deque(way)
 
     def stop(self) -> None:
         """Stop whatever moves it."""

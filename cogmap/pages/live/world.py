@@ -72,7 +72,7 @@ class World:
     @cached_property
     def sampled_poses(self) -> Float[np.ndarray, "sampled 3"]:
         """Where those were taken that the map perceives anew, row by row as `Mind.remembered`."""
-        return self.poses[self.mind.sample]
+        return np.asarray(self.poses[self.mind.sample])
 
     @cached_property
     def map_frame(self) -> MapFrame | None:

@@ -168,6 +168,19 @@ def test_without_a_motor_model_it_goes_nowhere_and_says_so(world: World) -> None
     assert "--motor" in session.said
 
 
+def test_where_nothing_is_known_it_does_not_dream_of_the_way_and_gives_up(session: Session) -> None:
+    session.stand(-1.0, -0.6, 0.0)
+    session.light(on=False)
+    session.aim(*GOAL)
+    assert session.doing is Doing.GOING
+    assert "does not dream" in session.said
+    assert len(session.route) == 0
+    for _ in range(200):
+        session.step(0.1)
+    assert session.doing is Doing.STANDING
+    assert "nothing that it remembers" in session.said
+
+
 def test_a_goal_must_be_free(session: Session) -> None:
     session.aim(2.9, 0.0, 0.0)
     assert "does not fit" in session.said
