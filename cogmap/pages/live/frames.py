@@ -49,7 +49,7 @@ def dreamt_frames(session: Session, since: int) -> list[str]:
 @lru_cache(maxsize=256)
 def _remembered(world: World, view: int) -> Json:
     pose = world.poses[view]
-    return {"view": data_url(np.asarray(world.walk.views[view])), "pose": np.round(pose, 3).tolist()}
+    return {"view": data_url(np.asarray(world.mind.memory[view])), "pose": np.round(pose, 3).tolist()}
 
 
 def _bytes(rates: Float[np.ndarray, "cells"], full: float) -> str:

@@ -146,6 +146,11 @@ class Mind:
 
     def look(self, view: UInt8[np.ndarray, "height width 3"]) -> Thought:
         """Perceive a view, imagine what should be seen there, and find what is remembered of it."""
+        # once for all that it calls
+        with one_thread():
+            return self._look(view)
+
+    def _look(self, view: UInt8[np.ndarray, "height width 3"]) -> Thought:
         seen = self.cmap.perceive(view[None])
         code = np.asarray(self.cmap.encode(view[None]), np.float32)
         apart = self._squares - 2 * (self.codes @ code[0])
