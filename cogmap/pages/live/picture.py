@@ -117,7 +117,7 @@ class Painting:
         left, top, right, bottom = PLAN
         middle = np.array([(x0 + x1) / 2, (y0 + y1) / 2])
         there = (points - middle) * [self._scale, -self._scale]
-        return np.add(there, [(left + right) / 2, (top + bottom) / 2])
+        return np.asarray(np.add(there, [(left + right) / 2, (top + bottom) / 2]))
 
     def _in_cells(self, points: Float[np.ndarray, "points 2"]) -> Float[np.ndarray, "points 2"]:
         x0, y0, x1, y1 = self.world.room.walkable.bounds

@@ -241,5 +241,6 @@ def serve(shown: World | Mechanism, *, port: int, show: bool = False) -> None:
         tailwind=False,
         show_welcome_message=False,
         message_history_length=HISTORY,
+        timeout_graceful_shutdown=1,  # pages that are open do not keep it
         favicon="🧭",
     )
