@@ -50,7 +50,7 @@ def _dream(
     start, goal
         Images of the first and the last view, of the size the map was learnt from.
     out
-        Film to write, .mp4, or a folder for PNGs; it must not exist.
+        Film to write, .mp4 or .gif, or a folder for PNGs; it must not exist.
     """
     check_film(out)
     grown, walk = CognitiveMap.load(cmap), Recording.open(recording).without_truth()

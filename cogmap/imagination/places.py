@@ -134,6 +134,8 @@ class RememberedPlaces:
         chosen = np.zeros((len(near), count), np.int64)
         taken = np.ones(len(near), np.int64)
         for candidate in range(1, candidates):
+            if (taken == count).all():
+                break
             kept = np.take_along_axis(places, chosen[:, :, None], axis=1)
             gap = np.linalg.norm(kept - places[:, candidate, None], axis=2).min(axis=1)
             free = np.isfinite(reach[:, candidate]) & (taken < count)

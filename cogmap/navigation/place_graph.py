@@ -102,6 +102,12 @@ class PlaceGraph:
         return float(1.5 * np.percentile(distances, 95))
 
     @cached_property
+    def edges(self) -> Float[np.ndarray, "edges 4"]:
+        """Ends x, y, x, y of all steps between free cells that ways are made of."""
+        pairs = self._graph.tocoo()
+        return np.hstack([self._middles[pairs.row], self._middles[pairs.col]])
+
+    @cached_property
     def _cell(self) -> float:
         check_array("position", self.position, (None, 2))
         return self.spacing / CELLS

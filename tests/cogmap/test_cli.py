@@ -438,7 +438,7 @@ def test_dream_refuses_bad_ends_and_leaves_nothing(
         ends = ["--from", tmp_path / "here.png", "--to", tmp_path / f"{goal}.png", "--out", out]
         refused(run("dream", settled / "map", settled / "walk.zarr", *ends), *words)
     ends = ["--from", tmp_path / "here.png", "--to", tmp_path / "here.png"]
-    refused(run("dream", settled / "map", settled / "walk.zarr", *ends, "--out", tmp_path / "x.gif"), ".gif")
+    refused(run("dream", settled / "map", settled / "walk.zarr", *ends, "--out", tmp_path / "x.avi"), ".avi")
     assert {file.stem for file in tmp_path.iterdir()} == set(images)
 
 

@@ -1,4 +1,6 @@
 import time
+from concurrent.futures import ThreadPoolExecutor
+from threading import get_ident
 
 import pytest
 import torch
@@ -17,6 +19,38 @@ def test_one_thread_inside_and_what_was_before_outside() -> None:
         raise RuntimeError("stop")
     assert torch.get_num_threads() == 2
     assert torch.is_grad_enabled()
+
+
+def test_one_thread_within_one_thread_leaves_the_outer_one_as_it_is() -> None:
+    torch.set_num_threads(2)
+    with one_thread():
+        with one_thread():
+            assert torch.get_num_threads() == 1
+        assert torch.get_num_threads() == 1
+        with one_thread(torch.device("cuda")):
+            assert torch.are_deterministic_algorithms_enabled()
+            with one_thread():
+                assert torch.are_deterministic_algorithms_enabled()
+        assert not torch.are_deterministic_algorithms_enabled()
+        assert torch.get_num_threads() == 1
+    assert torch.get_num_threads() == 2
+
+
+def test_another_thread_is_told_for_itself() -> None:
+    torch.set_num_threads(2)
+
+    def elsewhere(_: int) -> int:
+        torch.set_num_threads(2)
+        with one_thread():
+            return torch.get_num_threads()
+
+    with one_thread(), ThreadPoolExecutor(1) as pool:
+        assert list(pool.map(elsewhere, [0])) == [1]
+
+
+def test_a_single_item_is_worked_on_here() -> None:
+    assert list(in_order(lambda _: get_ident(), [0])) == [get_ident()]
+    assert list(in_order(lambda item: item, iter([]))) == []
 
 
 @pytest.mark.parametrize("device", ["cpu", "cuda"])
