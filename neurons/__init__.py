@@ -4,8 +4,10 @@ from neurons.atlas.atlas import Atlas
 from neurons.atlas.disambiguation import place_branches
 from neurons.atlas.heading_axis import heading_axes
 from neurons.atlas.metric_map import MetricMap, MetricReading
+from neurons.atlas.pieces import pieces
 from neurons.atlas.synchronisation import Compass, synchronise
 from neurons.circuit import Circuit
+from neurons.dividing import Part, divided
 from neurons.errors import NeuronsError
 from neurons.layers.afferents import Afferents
 from neurons.layers.charts import Charts, NearestCharts
@@ -17,6 +19,8 @@ from neurons.layers.retina import Retina
 from neurons.layers.sanger import Sanger
 from neurons.merging import forked, merge
 from neurons.network import Network
+from neurons.renewal import RenewalStage
+from neurons.rooms import Recognised, Rooms
 from neurons.stages import SMELL_FIRST, STAGES, Batch, Stage
 
 __all__ = [
@@ -36,14 +40,20 @@ __all__ = [
     "Network",
     "NeuronsError",
     "Olfaction",
+    "Part",
     "PlaceCells",
     "Readout",
+    "Recognised",
+    "RenewalStage",
     "Retina",
+    "Rooms",
     "Sanger",
     "Stage",
+    "divided",
     "forked",
     "heading_axes",
     "merge",
+    "pieces",
     "place_branches",
     "synchronise",
 ]
