@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from jaxtyping import Float, UInt8
-from scipy.optimize import curve_fit
-from scipy.special import expit
 
 from arena import Arena, Camera, Recording
 from cogmap.cells.decoding.decoders import fit_heading_frame, heading_errors
@@ -43,8 +41,8 @@ def morph(conditions: Conditions) -> Result:
     than that of the first, from −1 to 1 as their correlations differ; `heading` the same of the shares of
     views whose heading is right by less than 15° in the compass of either. `room` is the share of views
     that are taken for the second room, `confidence` how sure the map is of either, and `nowhere` the share of
-    those taken for neither. A width is that of the logistic that fits a curve best, from a tenth to nine
-    tenths of the switch, in parts of the way from room to room (0 to 1); `switch_at_*` is its middle.
+    those taken for neither. A width is the part of the way from room to room (0 to 1) from a tenth to
+    nine tenths of the switch, linear between steps; `switch_at_*` is its middle.
 
     References
     ----------
@@ -179,22 +177,14 @@ def _switches(curves: pd.DataFrame) -> dict[str, float]:
 
 
 def _switch(curve: pd.DataFrame, what: str) -> tuple[float, float] | None:
-    """Fit a logistic to a curve: the blend at its middle, and its width from a tenth to nine tenths.
+    """Find the blend in the middle of a switch, and its width from a tenth to nine tenths, between steps.
 
     None where the curve ends near where it begins: nothing has switched.
     """
-    blend: Float[np.ndarray, "steps"] = curve["blend"].to_numpy(float)
-    level = curve[what].to_numpy(float)
+    level: Float[np.ndarray, "steps"] = curve[what].to_numpy(float)
     if not level[-1] - level[0] > SWITCHED:
         return None
-
-    def logistic(
-        x: Float[np.ndarray, "steps"], low: float, high: float, middle: float, slope: float
-    ) -> Float[np.ndarray, "steps"]:
-        return np.asarray(low + (high - low) * expit(slope * (x - middle)))
-
-    guess = (level[0], level[-1], 0.5, 20.0)
-    bounds = ([-1.5, -1.5, 0.0, 1.0], [1.5, 1.5, 1.0, 400.0])
-    _, _, middle, slope = curve_fit(logistic, blend, level, guess, bounds=bounds)[0]
-    # expit is a tenth at −ln 9
-    return float(middle), float(2 * np.log(9) / slope)
+    # as far as it has come: where a curve falls back a little it has not switched back
+    done = np.maximum.accumulate((level - level[0]) / (level[-1] - level[0]))
+    early, middle, late = np.interp([0.1, 0.5, 0.9], done, curve["blend"].to_numpy(float))
+    return float(middle), float(late - early)

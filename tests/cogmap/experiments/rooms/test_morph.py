@@ -25,12 +25,15 @@ def test_all_walls_and_boxes_are_painted_and_nothing_moves() -> None:
     assert (room.sources, room.platform) == (other.sources, other.platform)
 
 
-def test_the_width_of_a_logistic_is_found_and_a_flat_curve_has_none() -> None:
+def test_the_width_of_a_switch_is_found_and_a_flat_curve_has_none() -> None:
     blend = np.linspace(0, 1, 11)
-    slope = 2 * np.log(9) / 0.25  # from a tenth to nine tenths in a quarter of the way
-    rising = pd.DataFrame({"blend": blend, "room": 1 / (1 + np.exp(-slope * (blend - 0.4)))})
-    assert _switch(rising, "room") == pytest.approx((0.4, 0.25), rel=1e-3)
-    assert _switch(rising.assign(room=0.5), "room") is None
+    # from −1 to 1 between .3 and .5, with a little back and forth
+    level = np.interp(blend, [0.0, 0.3, 0.5, 0.8, 0.9, 1.0], [-1.0, -1.0, 1.0, 1.0, 0.98, 1.0])
+    rising = pd.DataFrame({"blend": blend, "place": level})
+    assert _switch(rising, "place") == pytest.approx((0.4, 0.16))
+    assert _switch(rising.assign(place=0.5), "place") is None
+    sudden = rising.assign(place=np.where(blend < 0.55, -1.0, 1.0))
+    assert _switch(sudden, "place") == pytest.approx((0.55, 0.08))
 
 
 @pytest.mark.near_guard  # what is recognised does not depend on what is trusted
