@@ -117,14 +117,14 @@ def test_charts_are_added_while_they_do_not_agree(
     network: Network, monkeypatch: pytest.MonkeyPatch, most: int, charts: int, *, better: bool
 ) -> None:
     found = torch.tensor([1.0, 0.9999 if better else 0.99])
-    orient = OlfactionStage._orient
+    orient = OlfactionStage.orient
 
     def disagree(stage: OlfactionStage, circuit: Circuit) -> None:
         orient(stage, circuit)
         circuit.agreement = found.clone()
         circuit.connected.zero_()
 
-    monkeypatch.setattr(OlfactionStage, "_orient", disagree)
+    monkeypatch.setattr(OlfactionStage, "orient", disagree)
     network.most_charts = most
     while network.stage.name != "cells":
         network.learn(*stream(50, int(network.views_seen)))

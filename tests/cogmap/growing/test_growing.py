@@ -23,7 +23,7 @@ def test_every_view_of_every_explorer_is_learnt_once(undisturbed: Path) -> None:
         assert float(state[f"{cells}.afferents.activity"].sum()) == pytest.approx(SMALL["views"], rel=1e-5)
     assert bool(state["olfaction.gram"][:, 0, 0].sum() > 0)
     assert (cmap.charts, cmap.epoch, cmap.view_shape_) == (60, 400, (15, 90, 3))
-    assert cmap._network.stage is cmap._network.stages[-1]
+    assert cmap._rooms[0].stage is cmap._rooms[0].stages[-1]
     assert not list(undisturbed.parent.glob("*.growing"))
 
 
@@ -162,7 +162,7 @@ def test_sight_alone_is_learnt_without_cells(tmp_path: Path) -> None:
     room = Arena.load("furnished").model_copy(update={"sources": ()})
     cmap = growing.grow(room, tmp_path / "map", **{**SMALL, "views": 300, "charts": 30, "epoch": 300})
     assert cmap.odorants_ == 0
-    assert [stage.name for stage in cmap._network.stages] == ["code", "charts", "rest"]
+    assert [stage.name for stage in cmap._rooms[0].stages] == ["code", "charts", "rest"]
     assert float(cmap.state_dict()["charts.centres"].abs().sum()) > 0
 
 

@@ -88,7 +88,10 @@ def served(refined: Any, tmp_path_factory: pytest.TempPathFactory) -> Iterator[S
     ]
     command += ["--arena", "open_field", "--motor", str(folder / "motor"), "--port", str(port)]
     quiet = {name: value for name, value in os.environ.items() if not name.startswith(("PYTEST", "NICEGUI"))}
+    # who runs the tests may have none of it, as `nohup` has, and children do as they do
+    hung = signal.signal(signal.SIGHUP, signal.SIG_DFL)
     with subprocess.Popen(command, env=quiet, stderr=subprocess.PIPE) as process:
+        signal.signal(signal.SIGHUP, hung)
         assert process.stderr is not None
         for line in process.stderr:
             if b"the page is at" in line:
