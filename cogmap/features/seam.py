@@ -63,7 +63,9 @@ def _likeness_of_neighbours(views: Any) -> tuple[float, float]:
     """Correlate what changes in the last and the first column, and in other neighbours (median)."""
     views = checked_views(views)
     chosen = np.unique(np.linspace(0, views.shape[0] - 1, min(LOOKED_AT, views.shape[0])).astype(int))
-    deviation = np.stack([np.asarray(views[int(view)], np.float32) for view in chosen])
+    # by slices: what is lazy need not know more
+    looked_at = [np.asarray(views[view : view + 1], np.float32) for view in chosen.tolist()]
+    deviation = np.concatenate(looked_at)
     deviation -= deviation.mean(axis=0)
     columns = deviation.transpose(2, 0, 1, 3).reshape(views.shape[2], -1)
     # Grey levels squared and summed: one keeps what never changes from a division by zero.

@@ -548,7 +548,8 @@ class CognitiveMap:
             raise CogmapError(f"smell_first is {self.smell_first!r}; give True or False")
         stages = SMELL_FIRST if self.smell_first else STAGES
         if self.time_constant is not None:
-            stages = *stages, RenewalStage(time_constant=checked_number("time_constant", self.time_constant))
+            lasting = checked_number("time_constant", self.time_constant, 1.0)
+            stages = *stages, RenewalStage(time_constant=lasting)
         begin = partial(
             _begun,
             self._retina.features,

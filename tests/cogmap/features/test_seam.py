@@ -49,3 +49,19 @@ def test_of_noise_and_of_still_views_neither_is_so() -> None:
     still = np.repeat(Camera.perspective(64, 48).render(ROOM, poses(1)), 20, axis=0)
     for views in (noise, still):
         assert not seam_is_open(views)
+
+
+def test_lazy_views_need_know_slices_alone() -> None:
+    class Painted:
+        dtype = np.dtype(np.uint8)
+
+        def __init__(self, views: np.ndarray) -> None:
+            self._views, self.shape = views, views.shape
+
+        def __getitem__(self, rows: slice) -> np.ndarray:
+            assert isinstance(rows, slice)
+            return self._views[rows]
+
+    views = Camera.panoramic(90, 15).render(ROOM, poses(60))
+    assert wraps_around(Painted(views)) == wraps_around(views)
+    assert not seam_is_open(Painted(views))

@@ -146,5 +146,5 @@ def test_renewal_is_off_unless_asked_for(walks: list[Recording]) -> None:
     activities = [float(cmap.state_dict()["place.afferents.activity"].sum()) for cmap in maps]
     assert activities[0] == pytest.approx(600, rel=1e-3)
     assert activities[1] < 550
-    with pytest.raises(CogmapError, match="time_constant is -1"):
-        CognitiveMap(charts=60, time_constant=-1).fit(views, odours)
+    with pytest.raises(CogmapError, match="time_constant is 0; give a number of at least 1"):
+        CognitiveMap(charts=60, time_constant=0).fit(views, odours)

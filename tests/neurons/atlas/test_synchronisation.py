@@ -147,3 +147,14 @@ def test_atlas_in_two_pieces(tiling: Tiling, turning: Callable[[Tensor], Tensor]
     centres[600:, 0] += 50
     with pytest.raises(NeuronsError, match="falls into 2 pieces"):
         synchronise(centres, turning(pose), Atlas.of(centres))
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_a_compass_is_turned_and_mirrored_to_headings_that_are_known(compass: Compass, mirror: bool) -> None:  # noqa: FBT001
+    known = 0.7 + (-compass.phases if mirror else compass.phases)
+    turned = compass.turned_to(known)
+    torch.testing.assert_close((turned.phases - known).cos(), torch.ones(len(known)), atol=1e-5, rtol=0)
+    side = -1 if mirror else 1
+    # so that headings change from chart to chart as before, the other way round in a mirror
+    torch.testing.assert_close(turned.turning, side * compass.turning)
+    assert (turned.scale, turned.eigenvalue) == (compass.scale, compass.eigenvalue)
