@@ -42,6 +42,7 @@ class RenewalStage(StripStage):
 
     name = "renewal"
     recent = CorrectedMetricMapStage.recent
+    follows = True
     epochs: int = 0
     time_constant: float = 17_000.0
 

@@ -303,6 +303,9 @@ class Rooms(nn.Module):
         self.strangeness.lerp_(self.strangeness.new_tensor(strange), 1 - kept)
         if float(self.strangeness) < self.majority:
             return nearest
+        present = int(self.present)
+        if not jump and self[present].stage.follows:
+            return present
         growing = self.growing
         if growing is None:
             self.add()

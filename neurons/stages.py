@@ -68,12 +68,15 @@ class Stage(ABC, Generic[Seen]):
         compete, and what they learn depends on the order of views.
     recent
         Buffers that hold the last views of a walk, floating point; NaN where the next view follows none.
+    follows
+        Whether it takes what is new on a walk for a change of the room, and not for another room.
     """
 
     name: ClassVar[str]
     in_order: ClassVar[bool] = False
     sums: ClassVar[tuple[str, ...]] = ()
     recent: ClassVar[tuple[str, ...]] = ()
+    follows: ClassVar[bool] = False
     epochs: int = 1
 
     def layers(self, circuit: Circuit) -> dict[str, nn.Module]:  # noqa: ARG002

@@ -23,6 +23,7 @@ from cogmap.plots.cells.grid_cells import plot_grid_cells
 from cogmap.plots.cells.heading_cells import plot_tuning_curves
 from cogmap.plots.cells.learning_curves import plot_courses
 from cogmap.plots.cells.place_cells import plot_rate_maps
+from cogmap.plots.many_rooms.fields import plot_fields
 from cogmap.plots.many_rooms.forgetting import plot_forgetting
 from cogmap.plots.many_rooms.morph import plot_morph
 from cogmap.plots.many_rooms.new_wall import plot_new_wall
@@ -67,6 +68,7 @@ __all__ = [
     "plot_embedding",
     "plot_examples",
     "plot_expectations",
+    "plot_fields",
     "plot_film",
     "plot_foretold",
     "plot_forgetting",

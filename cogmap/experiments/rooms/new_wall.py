@@ -73,7 +73,8 @@ def new_wall(conditions: Conditions) -> Result:
     rows = [{"views": 0, **_errors(living, trial, other)}]
     odours = other.walk.require("odours")
     for rows_of in gen_batches(len(other.walk), round(conditions.views / STRETCHES)):
-        living.partial_fit(other.walk.views[rows_of], odours[rows_of], jump=rows_of.start == 0)
+        # no jump: with one it would be another room. One step of all these leads from where it stood
+        living.partial_fit(other.walk.views[rows_of], odours[rows_of])
         rows.append({"views": rows_of.stop, **_errors(living, trial, other)})
     table = pd.DataFrame(rows)
     plain = _errors(_unrefined(trial.cmap), trial, trial)

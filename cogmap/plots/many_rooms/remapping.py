@@ -9,8 +9,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from cogmap.cells import RateMaps
-from cogmap.errors import CogmapError
-from cogmap.plots.style import BAD, GOOD, INK, SMALL, SOFT, TINY, colour_bar, draw_bins, new_figure, tidy
+from cogmap.plots.many_rooms.fields import chosen, draw_cell
+from cogmap.plots.style import BAD, GOOD, INK, SMALL, SOFT, TINY, colour_bar, new_figure, tidy
 
 CELLS = 6
 KINDS = {"global": BAD, "rate": GOOD, "none": SOFT}
@@ -33,23 +33,16 @@ def plot_remapping(rooms: Mapping[str, RateMaps], pairs: pd.DataFrame, changes: 
     CogmapError
         Without a room.
     """
-    if not rooms:
-        raise CogmapError("no rooms to draw; give rate maps of at least one")
+    shown = chosen(rooms, CELLS)
     figure = new_figure(1.15 * len(rooms) + 0.6, 0.95 * CELLS + 4.2)
     above, below = figure.subfigures(2, 1, squeeze=False, height_ratios=[0.95 * CELLS + 0.3, 3.9])[:, 0]
     panels = above.subplots(CELLS, len(rooms), squeeze=False)
-    first = next(iter(rooms.values()))
-    shown = np.argsort(-np.nanmax(first.rates, axis=(1, 2)))[:: max(1, len(first) // CELLS)][:CELLS]
     for line, cell in zip(panels, shown, strict=False):
-        top = max(float(np.nanmax(maps.rates[cell])) for maps in rooms.values())
-        for axes, (name, maps) in zip(line, rooms.items(), strict=True):
-            drawn = draw_bins(axes, maps.edges, maps.rates[cell], "viridis", low=0.0, high=max(top, 1e-9))
-            axes.set_aspect("equal")
-            axes.set(xticks=[], yticks=[])
-            if axes in panels[0]:
-                axes.set_title(name.replace("_", "\n"), fontsize=TINY, color=INK)
+        scale = draw_cell(line, rooms, cell)
         line[0].set_ylabel(f"cell {cell}", fontsize=TINY, color=INK)
-        colour_bar(line[-1], drawn, "Hz")
+        colour_bar(line[-1], scale, "Hz")
+    for axes, name in zip(panels[0], rooms, strict=True):
+        axes.set_title(name.replace("_", "\n"), fontsize=TINY, color=INK)
     left, right = below.subplots(1, 2, width_ratios=[1, 1.1])
     names = list(rooms)
     matrix = np.eye(len(names))
