@@ -19,7 +19,7 @@ from neurons.stages import (
 
 
 class Clock(nn.Module):
-    """Counts views since the charts have last agreed."""
+    """Counts views since places were last laid out."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -31,13 +31,16 @@ class RenewalStage(StripStage):
     """The last stage of a map that is to follow a room that changes; it never ends.
 
     Sums of olfaction and afferents decay to 1/e in `time_constant` views, while charts move to what they
-    win. As often the charts agree anew, on a compass that is turned to the one before, and places are laid
-    out from the last of the walk; in between all is told as it was.
+    win. Some times in as many views the charts agree anew, on a compass that is turned to the one before, and
+    the walk since tells whether places still lie where they were; once in as many they are laid out anew from
+    it. In between all is told as it was.
 
     Parameters
     ----------
     time_constant
-        Views.
+        Views. With fewer than the map learnt from, it is learnt from fewer, and as much worse.
+    agreements
+        How often charts agree in as many views.
     """
 
     name = "renewal"
@@ -45,6 +48,7 @@ class RenewalStage(StripStage):
     follows = True
     epochs: int = 0
     time_constant: float = 17_000.0
+    agreements: int = 4
 
     def layers(self, circuit: Circuit) -> dict[str, nn.Module]:  # noqa: ARG002
         """Make the clock."""
@@ -63,14 +67,21 @@ class RenewalStage(StripStage):
         few = ChartStage().winners[1]
         circuit.charts.partial_fit(codes, batch.log_odours, winners=few, window=self.time_constant)
         clock = circuit.get_buffer("renewed.views")
+        before = self._agreements(int(clock))
         clock += count
-        if int(clock) >= self.time_constant:
-            clock.zero_()
-            self._agree(circuit)
+        if self._agreements(int(clock)) > before:
+            self._agree(circuit, anew=int(clock) >= self.time_constant)
+
+    def _agreements(self, views: int) -> int:
+        return int(views * self.agreements / self.time_constant)
 
     @staticmethod
-    def _agree(circuit: Circuit) -> None:
+    def _agree(circuit: Circuit, *, anew: bool) -> None:
         circuit.charts.freeze()
         OlfactionStage().orient(circuit, known=circuit.readout.phases)
-        CorrectedMetricMapStage().finish(circuit)
-        circuit.metric_map.begin_again()
+        if anew:
+            CorrectedMetricMapStage().finish(circuit)
+            circuit.metric_map.begin_again()
+            circuit.get_buffer("renewed.views").zero_()
+        else:
+            circuit.metric_map.check()

@@ -150,6 +150,16 @@ class MetricMap(nn.Module):
             self.positions = torch.view_as_real(positions).float()
             self.offsets = wrap_angle(self.offsets + turns.angle().float())
 
+    def check(self) -> None:
+        """Learn from the sums whether displacements are still those of the map as it is."""
+        halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
+        if self.positions.isnan().any() or min(half.pairs for half in halves) < len(self.offsets):
+            return
+        positions = torch.view_as_complex(self.positions.double())
+        turns = torch.ones_like(halves[0].ahead[:, 0])  # headings have been corrected already
+        found = [half.cross_validated_r2(positions, turns) for half in halves]
+        self.cross_validated_r2 = self.cross_validated_r2.new_tensor(found)
+
     def diagnosis(self) -> str:
         """Say why nothing is learnt, or nothing when it is."""
         if self.cross_validated_r2.isnan().any():

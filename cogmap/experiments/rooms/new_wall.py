@@ -14,6 +14,7 @@ from sklearn.utils import gen_batches
 from arena import Arena, Camera
 from cogmap import cells
 from cogmap.errors import CogmapError
+from cogmap.evaluation.populations import perceive
 from cogmap.evaluation.scoring import score
 from cogmap.experiments import Conditions, Result, Trial, experiment
 from cogmap.experiments.acting.dreamer import Dreamer
@@ -26,7 +27,7 @@ WALL = {"size": (0.1, 1.2), "height": 1.0, "material": "white"}
 WALL_SEED = 3000
 """Added to the seed for walks beside the wall."""
 ROUNDS = 12
-"""Stretches of a walk after which the map is asked again,"""
+"""Stretches of a walk after each of which the map is asked again,"""
 STRETCHES = 4
 """of which so many are as long as the walk that was learnt from."""
 RIGHT = 1.2
@@ -41,7 +42,7 @@ VISIBLE = 8
 def new_wall(conditions: Conditions) -> Result:
     """Set a wall into a room that was learnt, and let the map live on beside it.
 
-    The map forgets with a time constant of a quarter of the views that it learnt from
+    The map forgets with a time constant of as many views as it learnt from
     (`CognitiveMap(time_constant=...)`). `split_cells` is the share of place cells with one field before that
     have two or more on the first walk beside the wall, before anything is learnt there; `split_cells_later`
     that after all is. `surprise_auc` is over the pixels of 500 views that are rendered with and without the
@@ -54,7 +55,7 @@ def new_wall(conditions: Conditions) -> Result:
     Barry et al. (2006), The boundary vector cell model of place cell firing and spatial memory. Rev.
     Neurosci. 17.
     """
-    usual = {"time_constant": conditions.views / STRETCHES}
+    usual = {"time_constant": conditions.views}
     conditions = replace(conditions, map={**usual, **conditions.map})
     dreamer = Dreamer.of(conditions)
     trial = dreamer.trial
@@ -70,14 +71,14 @@ def new_wall(conditions: Conditions) -> Result:
     living = deepcopy(trial.cmap)
     living.relaxed_places_ = None
     kept = Visit.of(living, trial, other.fresh)
-    rows = [{"views": 0, **_errors(living, trial, other)}]
+    rows = [{"views": 0, **_errors(living, other, conditions.views)}]
     odours = other.walk.require("odours")
     for rows_of in gen_batches(len(other.walk), round(conditions.views / STRETCHES)):
         # no jump: with one it would be another room. One step of all these leads from where it stood
         living.partial_fit(other.walk.views[rows_of], odours[rows_of])
-        rows.append({"views": rows_of.stop, **_errors(living, trial, other)})
+        rows.append({"views": rows_of.stop, **_errors(living, other, conditions.views)})
     table = pd.DataFrame(rows)
-    plain = _errors(_unrefined(trial.cmap), trial, trial)
+    plain = _errors(_unrefined(trial.cmap), trial, conditions.views)
     names = ("heading_median_deg", "position_median_m")
     for name in names:
         table[f"{name.partition('_')[0]}_over_before"] = table[name] / plain[name]
@@ -124,10 +125,14 @@ def _unrefined(cmap: CognitiveMap) -> CognitiveMap:
     return plain
 
 
-def _errors(cmap: CognitiveMap, learnt: Trial, there: Trial) -> dict[str, float]:
-    """Score what a map says of a fresh walk, in frames fitted on the walk that was learnt from."""
-    seen = Visit.of(cmap, learnt, there.fresh)
-    figures = score(seen.test, there.fresh.require("poses"), train=(seen.train, learnt.truth.train))
+def _errors(cmap: CognitiveMap, there: Trial, count: int) -> dict[str, float]:
+    """Score what a map says of a fresh walk, by frames and decoders that know so many views there."""
+    known = there.walk[:count]
+    figures = score(
+        perceive(cmap, there.fresh.views),
+        there.fresh.require("poses"),
+        train=(perceive(cmap, known.views), known.require("poses")),
+    )
     return {
         name: figures.get(name, float("nan"))
         for name in ("heading_median_deg", "heading_p95_deg", "position_median_m", "position_p95_m")

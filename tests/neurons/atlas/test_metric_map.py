@@ -100,6 +100,25 @@ def test_finds_the_map_and_the_offset(cells: PlaceCells, walked: Walk) -> None:
     assert spread_of_angle(off(fresh.place) - offset) < 0.45 * spread_of_angle(off(fresh.place))
 
 
+def test_a_walk_elsewhere_is_told_from_one_that_the_map_foretells(cells: PlaceCells, walked: Walk) -> None:
+    metric_map = learn(cells, walked)
+    positions, learnt = metric_map.positions, metric_map.cross_validated_r2
+    metric_map.begin_again()
+    teach(metric_map, cells, walk(100, 2))
+    metric_map.check()  # too short to tell
+    assert metric_map.cross_validated_r2 is learnt
+    teach(metric_map, cells, walk(3000, 3))
+    metric_map.check()
+    assert metric_map.cross_validated_r2.min() > 0.97
+    assert metric_map.cross_validated_r2 is not learnt
+    metric_map.begin_again()
+    here = walk(3000, 4)
+    teach(metric_map, cells, here._replace(odour=smell(1 - here.place)))
+    metric_map.check()
+    assert "one half of the walk foretells" in metric_map.diagnosis()
+    assert metric_map.positions is positions
+
+
 def test_a_second_time_on_corrected_headings_the_offset_is_nearer(cells: PlaceCells, walked: Walk) -> None:
     once, fresh = learn(cells, walked), walk(1000, 1)
     twice = learn(cells, walked)
