@@ -214,6 +214,20 @@ class Rooms(nn.Module):
         other = Rooms(self._begin, first=self[room])
         return other.to(self.present.device)
 
+    @property
+    def sizes(self) -> list[dict[str, int]]:
+        """Sizes of the rooms' networks, by which `restore` makes them again."""
+        return [
+            {
+                "epoch": network.epoch,
+                "components": len(network.code),
+                "charts": len(network.charts),
+                "most_charts": network.most_charts,
+                "tangents": network.charts.dimensions,
+            }
+            for network in self
+        ]
+
     def restore(self, sizes: Sequence[Mapping[str, int]]) -> None:
         """Make rooms of these sizes, to be filled with what has been saved of them."""
         features = self[0].code.weight.shape[1]

@@ -85,7 +85,8 @@ class CognitiveMap:
         recalls of it.
     time_constant
         Views in which what a room has taught is forgotten to 1/e once its map is grown, where rooms change
-        for good (`neurons.renewal`); None forgets nothing.
+        for good (`neurons.renewal`); about as many as it has learnt from. What is new is then a change of
+        the room unless it comes after a jump. None forgets nothing.
     eye
         "panorama" for views all around, or "perspective" for any with borders; told from the views themselves
         when None (`cogmap.features.seam`), and a warning where it is told and they speak against it.
@@ -210,22 +211,12 @@ class CognitiveMap:
                 for rows, strip in self._strips(views):
                     strips[rows] = strip
             if known:
-                batches = torch.arange(len(strips), device=strips.device).split(BATCH)
-                new = [rooms.are_new(strips[rows], smells[rows]) for rows in batches]
-                fresh = [rows for rows, novel in zip(batches, new, strict=True) if novel]
-                if all(new):
-                    self._check_enough(len(strips))
-                elif sum(map(len, fresh)) < self.charts:  # a few strange views begin no room
-                    new, fresh = [False] * len(new), []
-                jump = True
-                for rows, novel in zip(batches, new, strict=True):
-                    if not novel:
-                        rooms.learn(strips[rows], smells[rows], jump=jump)
-                    jump = novel
-                if not fresh:
+                fresh = growing.of_known(rooms, strips, smells, least=int(self.charts))
+                if not len(fresh):
                     return self
+                self._check_enough(len(fresh))
                 rooms.add()
-                strips, smells = (each[torch.cat(fresh)] for each in (strips, smells))
+                strips, smells = strips[fresh], smells[fresh]
             rooms.networks[-1], *others = growing.of(rooms[len(rooms) - 1], strips, smells)
             rooms.networks.extend(others)
         return self
@@ -480,21 +471,11 @@ class CognitiveMap:
         CogmapError
             When something is at the path already, or it cannot be written.
         """
-        rooms = [
-            {
-                "epoch": network.epoch,
-                "components": len(network.code),
-                "charts": len(network.charts),
-                "most_charts": network.most_charts,
-                "tangents": network.charts.dimensions,
-            }
-            for network in self._learnt
-        ]
         learnt = {
             "view_shape": self.view_shape_,
             "odorants": self.odorants_,
             "eye": self.eye_,
-            "rooms": rooms,
+            "rooms": self._learnt.sizes,
         }
         settings = self.get_params()
         del settings["device"]

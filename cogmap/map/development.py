@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 import torch
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 from torch import Tensor
 from tqdm import tqdm
 
 from neurons.dividing import Part, divided
 from neurons.network import Network
+from neurons.rooms import Rooms
 from neurons.stages import StripStage, chosen, joined
 
 
@@ -48,6 +49,31 @@ class Development:
         """Let a network learn from views; give it, or those into which it has parted."""
         with tqdm(total=network.epochs, unit="epoch", disable=self._quiet) as self._bar:
             return self._pass(network, strips, log_odours)
+
+    def of_known(
+        self,
+        rooms: Rooms,
+        strips: Float[Tensor, "views features"],
+        log_odours: Float[Tensor, "views odorants"],
+        *,
+        least: int,
+    ) -> Int[Tensor, "_"]:
+        """Let rooms that are known learn their views of a walk, and give the rows of all others.
+
+        Fewer than `least` of these beside views of known rooms are strange views of known rooms.
+        """
+        batches = torch.arange(len(strips), device=strips.device).split(self._batch)
+        new = [rooms.are_new(strips[rows], log_odours[rows]) for rows in batches]
+        count = sum(len(rows) for rows, novel in zip(batches, new, strict=True) if novel)
+        if count < min(least, len(strips)):
+            new = [False] * len(new)
+        jump = True
+        for rows, novel in zip(batches, new, strict=True):
+            if not novel:
+                rooms.learn(strips[rows], log_odours[rows], jump=jump)
+            jump = novel
+        none = batches[0][:0]
+        return torch.cat([none, *(rows for rows, novel in zip(batches, new, strict=True) if novel)])
 
     @contextmanager
     def timed(self, what: str) -> Iterator[None]:

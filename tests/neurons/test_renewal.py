@@ -6,8 +6,9 @@ import torch
 from neurons.atlas.metric_map import MetricMap
 from neurons.network import Network
 from neurons.renewal import RenewalStage
+from neurons.rooms import Rooms
 from neurons.stages import STAGES
-from tests.neurons.test_rooms import BATCH, EPOCH, FEATURES, ODORANTS, walk
+from tests.neurons.test_rooms import BATCH, EPOCH, FEATURES, ODORANTS, begin, walk
 
 SIZES = {"charts": 120, "most_charts": 120, "components": 6, "place_cells": 10, "heading_cells": 6}
 
@@ -83,3 +84,14 @@ def test_charts_agree_anew_four_times_as_often_as_places_are_laid_out(
     assert told == ["checked", "checked", "checked", "laid out"]
     assert int(living.get_buffer("renewed.views")) == 0
     assert int(living.metric_map.seen) == 0
+
+
+def test_what_is_new_on_a_walk_is_of_the_room_and_after_a_jump_of_another(network: Network) -> None:
+    for jump, known in ((False, 1), (True, 2)):
+        rooms = Rooms(begin, first=deepcopy(network))
+        rooms.learn(*walk(0, BATCH, 95))
+        for day in range(8):  # until nearly all that it has just seen is strange
+            rooms.learn(*walk(1, BATCH, day), jump=jump and not day)
+        assert len(rooms) == known
+        assert int(rooms.present) == known - 1
+        assert float(rooms.strangeness) > rooms.majority

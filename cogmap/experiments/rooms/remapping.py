@@ -31,6 +31,9 @@ GLOBAL = 0.5
 """Remapping index from which on cells have remapped globally,"""
 RATE = 2.0
 """and by how many times as much as where nothing changes rates must differ where they have not."""
+ALONE = 3
+"""Maps of a room alone, of other initial weights: one may well be 1.5 times as good as another in its
+headings."""
 CHANGED_SEED = 5000
 """Added to the seed for walks through changed rooms."""
 
@@ -41,7 +44,8 @@ def remapping(conditions: Conditions) -> Result:
 
     The rooms are as large and share materials; some share their sources of odour. Each is learnt from its own
     walk and never visited again while others are learnt. `heading_over_alone` and `position_over_alone` are
-    errors over those of a map of that room alone, of the worst room; `room_recognised` is the share of fresh
+    errors over those of a map of that room alone, the mean of three of other initial weights, of the worst
+    room; `room_recognised` is the share of fresh
     views of the worst room that sight alone takes for it. Population vectors of place cells are
     correlated place by place: between rooms (`between_correlation`, the mean over pairs), within a room
     between two fresh walks at the end, and on return (`return_correlation`, of the worst room) between a
@@ -117,18 +121,27 @@ def _once_more(trial: Trial) -> Any:
 def _compared(number: int, trial: Trial, there: Visit, back: Visit, before: cells.RateMaps) -> dict[str, Any]:
     """Put what a map of many rooms makes of one beside what a map of that one makes."""
     many = there.figures
-    alone = Visit.of(blank_map(trial.conditions).fit(trial.walk.views, trial.walk.odours), trial).figures
-    known = {name: many.get(name, np.nan) for name in ("heading_median_deg", "position_median_m")}
+    names = ("heading_median_deg", "position_median_m")
+    known = {name: many.get(name, np.nan) for name in names}
+    alone = pd.DataFrame([_alone(trial, extra) for extra in range(ALONE)], columns=list(names)).mean()
     return {
         "room": HOUSE[number],
         "recognised": there.recognised(number),
         **known,
-        "heading_over_alone": known["heading_median_deg"] / alone.get("heading_median_deg", np.nan),
+        "heading_alone_deg": alone["heading_median_deg"],
+        "position_alone_m": alone["position_median_m"],
+        "heading_over_alone": known["heading_median_deg"] / alone["heading_median_deg"],
         "position_over_alone": known["position_median_m"] / alone["position_median_m"],
         "within_correlation": population_correlation(there.maps, back.maps),
         "return_correlation": population_correlation(before, back.maps),
         "active_share": float(active(there.maps).mean()),
     }
+
+
+def _alone(trial: Trial, extra: int) -> dict[str, float]:
+    """Score a map of one room alone, of initial weights by another seed."""
+    blank = blank_map(replace(trial.conditions, seed=trial.conditions.seed + extra))
+    return Visit.of(blank.fit(trial.walk.views, trial.walk.odours), trial).figures
 
 
 def _pair(
