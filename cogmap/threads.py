@@ -49,14 +49,16 @@ def one_thread(device: torch.device = CPU) -> Iterator[None]:
             torch.use_deterministic_algorithms(mode=False)
 
 
-def in_order(work: Callable[[Item], Done], items: Iterable[Item]) -> Iterator[Done]:
+def in_order(
+    work: Callable[[Item], Done], items: Iterable[Item], workers: int | None = None
+) -> Iterator[Done]:
     """Work on items in as many threads as there are cores; give what comes of them in their order.
 
     Each item is one thread's alone, so that the number of threads changes no bit. No more than one item a
     thread waits to be taken: memory does not grow with their number. One alone is done here: a thread takes
     as long to start as a view takes to be perceived.
     """
-    workers, items = cpu_count(), iter(items)
+    workers, items = workers or cpu_count(), iter(items)
     begun = list(islice(items, 2))
     if len(begun) < 2:
         yield from map(work, begun)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from contextlib import closing
 from functools import partial
 from pathlib import Path
@@ -17,15 +18,16 @@ from arena.motions.brownian import Brownian
 from arena.rooms.arena import Arena
 from arena.smell.nose import Nose
 from cogmap.atomic import user_path
-from cogmap.crew import Wording, on_cluster, on_this_machine
+from cogmap.crew import Wording, on_cluster
 from cogmap.errors import CogmapError
 from cogmap.growing.checkpoint import KEPT, Checkpoint
 from cogmap.growing.expedition import Expedition
 from cogmap.growing.growth import Crew, Growth
 from cogmap.growing.progress import Progress
-from cogmap.growing.work import do
+from cogmap.growing.work import Outcome, Task, do
 from cogmap.inputs import Whole, checked_count
 from cogmap.map.cognitive_map import CognitiveMap
+from cogmap.threads import in_order, one_thread
 
 EPOCH = 50_000
 """Views of an epoch in the stages that one process learns, unless there are fewer."""
@@ -121,7 +123,7 @@ def grow(
     if not checkpoint.folder.exists():
         check_absent(path, CogmapError)
     crew: Crew = (
-        partial(on_this_machine, do, workers=workers, wording=CREW)
+        partial(in_threads, workers=workers)
         if scheduler is None
         else partial(on_cluster, do, address=scheduler, wording=CREW)
     )
@@ -134,6 +136,13 @@ def grow(
             grown = Growth(expedition, checkpoint, crew, bar).run(blank)
         grown.save(path)
     return grown
+
+
+def in_threads(tasks: Iterable[Task], *, workers: int | None) -> Iterator[Outcome]:
+    """Do tasks in threads of this process: its libraries and the map are there once for all."""
+    # said before threads begin, as each would set what is one for all of them
+    with one_thread():
+        yield from in_order(do, tasks, workers)
 
 
 def usual_charts(views: int) -> int:
