@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from copy import deepcopy
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -47,8 +48,9 @@ def new_wall(conditions: Conditions) -> Result:
     have two or more on the first walk beside the wall, before anything is learnt there; `split_cells_later`
     that after all is. `surprise_auc` is over the pixels of 500 views that are rendered with and without the
     wall: which differ by more than 8 grey levels. `views_to_right` is after how many views beside the wall
-    both errors are at most 1.2 times what they were before, on another walk there; NaN if never. `kept_*` are
-    those of the map that learns nothing.
+    both errors are at most 1.2 times what they were before, on another walk there; null if never.
+    `trusted_and_wrong` is the share of the times when it was asked at which it was not, and yet was trusted
+    and took most views for those of its room. `kept_*` are those of the map that learns nothing.
 
     References
     ----------
@@ -71,14 +73,14 @@ def new_wall(conditions: Conditions) -> Result:
     living = deepcopy(trial.cmap)
     living.relaxed_places_ = None
     kept = Visit.of(living, trial, other.fresh)
-    rows = [{"views": 0, **_errors(living, other, conditions.views)}]
+    rows = [{"views": 0, **_told(living, other, conditions.views)}]
     odours = other.walk.require("odours")
     for rows_of in gen_batches(len(other.walk), round(conditions.views / STRETCHES)):
         # no jump: with one it would be another room. One step of all these leads from where it stood
         living.partial_fit(other.walk.views[rows_of], odours[rows_of])
-        rows.append({"views": rows_of.stop, **_errors(living, other, conditions.views)})
+        rows.append({"views": rows_of.stop, **_told(living, other, conditions.views)})
     table = pd.DataFrame(rows)
-    plain = _errors(_unrefined(trial.cmap), trial, conditions.views)
+    plain = _told(_unrefined(trial.cmap), trial, conditions.views)
     names = ("heading_median_deg", "position_median_m")
     for name in names:
         table[f"{name.partition('_')[0]}_over_before"] = table[name] / plain[name]
@@ -90,6 +92,7 @@ def new_wall(conditions: Conditions) -> Result:
             "split_cells": _split(before, kept),
             "split_cells_later": _split(before, after),
             "surprise_auc": _surprise_auc(dreamer, walled, other),
+            "trusted_and_wrong": float((table["trusted"] & (table["recognised"] > 0.5) & ~right).mean()),
             "views_to_right": int(table["views"][right].min()) if right.any() else None,
             **{f"before_{name}": plain[name] for name in names},
             **{f"kept_{name}": float(table[name].iloc[0]) for name in names},
@@ -125,17 +128,16 @@ def _unrefined(cmap: CognitiveMap) -> CognitiveMap:
     return plain
 
 
-def _errors(cmap: CognitiveMap, there: Trial, count: int) -> dict[str, float]:
+def _told(cmap: CognitiveMap, there: Trial, count: int) -> dict[str, Any]:
     """Score what a map says of a fresh walk, by frames and decoders that know so many views there."""
-    known = there.walk[:count]
-    figures = score(
-        perceive(cmap, there.fresh.views),
-        there.fresh.require("poses"),
-        train=(perceive(cmap, known.views), known.require("poses")),
-    )
+    known, test = there.walk[:count], perceive(cmap, there.fresh.views)
+    train = (perceive(cmap, known.views), known.require("poses"))
+    figures = score(test, there.fresh.require("poses"), train=train)
+    names = ("heading_median_deg", "heading_p95_deg", "position_median_m", "position_p95_m")
     return {
-        name: figures.get(name, float("nan"))
-        for name in ("heading_median_deg", "heading_p95_deg", "position_median_m", "position_p95_m")
+        "trusted": cmap.trusted_,
+        "recognised": float(np.mean(test.room == 0)),
+        **{name: figures.get(name, float("nan")) for name in names},
     }
 
 
