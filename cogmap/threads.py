@@ -56,15 +56,15 @@ def in_order(
 
     Each item is one thread's alone, so that the number of threads changes no bit. No more than one item a
     thread waits to be taken: memory does not grow with their number. One alone is done here: a thread takes
-    as long to start as a view takes to be perceived.
+    as long to start as a view takes to be perceived; and so are those of a thread that is one of many.
+    `workers` is how many threads, as many as cores when None.
     """
     workers, items = workers or cpu_count(), iter(items)
     begun = list(islice(items, 2))
-    if len(begun) < 2:
-        yield from map(work, begun)
+    if len(begun) < 2 or workers == 1 or getattr(_HERE, "one_of_many", False):
+        yield from map(work, chain(begun, items))
         return
-    # torch counts threads for each thread anew
-    with ThreadPoolExecutor(workers, initializer=torch.set_num_threads, initargs=(1,)) as pool:
+    with ThreadPoolExecutor(workers, initializer=_begin) as pool:
         waiting: deque[Future[Done]] = deque()
         for item in chain(begun, items):
             waiting.append(pool.submit(work, item))
@@ -72,3 +72,8 @@ def in_order(
                 yield waiting.popleft().result()
         while waiting:
             yield waiting.popleft().result()
+
+
+def _begin() -> None:
+    torch.set_num_threads(1)  # which torch counts for each thread anew
+    _HERE.one_of_many = True

@@ -23,7 +23,7 @@ def _grow(
     charts: int | None = None,
     epoch: int | None = None,
     scheduler: str | None = None,
-    workers: int | None = None,
+    threads: int | None = None,
     motion: Annotated[str, Parameter(help=f"How to move: {', '.join(motions())}.")] = "brownian",
     camera: Literal["panoramic", "perspective"] = "panoramic",
     width: int | None = None,
@@ -50,11 +50,11 @@ def _grow(
     charts
         Of the map; a third of the views by default, 6,000 at most.
     epoch
-        Views of an epoch in the stages that one process learns; 50,000 by default, or all if fewer.
+        Views of an epoch in the stages that one thread learns; 50,000 by default, or all if fewer.
     scheduler
         Address of a Dask scheduler, whose workers learn shares of the explorers.
-    workers
-        Processes on this machine; as many as cores by default.
+    threads
+        How many on this machine; as many as cores by default.
     camera
         What they look through: all around, or 90° ahead.
     width, height
@@ -83,7 +83,7 @@ def _grow(
         nose=build("nose", parts["nose"]),
         body=build("body", parts.get("body", {})),
         seed=seed,
-        workers=workers,
+        threads=threads,
         scheduler=scheduler,
         progress=sys.stderr.isatty(),
         **build("map", parts.get("map", {})),

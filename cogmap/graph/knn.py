@@ -72,7 +72,8 @@ def nearest_points(
 
     References
     ----------
-    Dong, Charikar & Li (2011), Efficient k-nearest neighbor graph construction for generic similarity measures.
+    Dong, Charikar & Li (2011), Efficient k-nearest neighbor graph construction for generic similarity
+    measures.
     """
     cloud = checked_cloud(cloud)
     others = None if queries is None else checked_cloud(queries)

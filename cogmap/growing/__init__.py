@@ -1,4 +1,4 @@
-"""Growing: one map of what many explorers see and smell, learnt by many processes."""
+"""Growing: one map of what many explorers see and smell, learnt by many threads or machines."""
 
 from cogmap.growing.growing import grow
 

@@ -19,7 +19,7 @@ from cogmap.inputs import log_odours
 
 TOGETHER, LEAST_SHARES = 16_384, 16
 """Views of a share at most, some seconds of work and 4 MB of codes, unless one explorer sees more; and into
-how many shares all are divided at least, so that there is work for several processes."""
+how many shares all are divided at least, so that there is work for several threads."""
 CODING, PAINTING = 2, 3
 """What the noise of an eye is drawn for: views on a way, and views picked from all ways."""
 
@@ -46,7 +46,7 @@ class Expedition:
     """Explorers of one kind in a room, each on a walk of its own.
 
     Explorer k draws from the k-th generator that the seed spawns, whoever walks beside it; shares depend on
-    the numbers of explorers and views alone. So whatever processes do, all of it is the same bit by bit.
+    the numbers of explorers and views alone. So whoever does them, all of it is the same bit by bit.
 
     Parameters
     ----------

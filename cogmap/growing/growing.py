@@ -1,4 +1,4 @@
-"""Grow one map of what many explorers see: some stages by one process, most of the work by all."""
+"""Grow one map of what many explorers see: some stages by one thread, most of the work by all."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from cogmap.map.cognitive_map import CognitiveMap
 from cogmap.threads import in_order, one_thread
 
 EPOCH = 50_000
-"""Views of an epoch in the stages that one process learns, unless there are fewer."""
+"""Views of an epoch in the stages that one thread learns, unless there are fewer."""
 MOST_CHARTS = 6_000
 """Charts of a map of a million views, unless told."""
 CREW = Wording("a share of the explorers", KEPT)
@@ -50,19 +50,19 @@ def grow(
     nose: Nose = Nose(),
     body: Body = Disc(),
     seed: Whole = 0,
-    workers: Whole | None = None,
+    threads: Whole | None = None,
     scheduler: str | None = None,
     progress: bool = False,
     **parameters: Any,
 ) -> CognitiveMap:
     """Grow one map of what many explorers see and smell in a room, and save it; nothing else is kept.
 
-    Code, charts and cells compete for views, and are learnt by one process, from views picked by chance from
+    Code, charts and cells compete for views, and are learnt by one thread, from views picked by chance from
     all walks, for so many epochs as the stages have. All views of all explorers are then summed up in those
-    stages that learn sums: what charts know of smell, the metric map, twice, and the afferents. Processes do
+    stages that learn sums: what charts know of smell, the metric map, twice, and the afferents. Threads do
     this for shares of the explorers on forks of the map, which are merged in the order of the shares.
 
-    The map is the same bit by bit whatever the number of processes, on one machine and on a cluster whose
+    The map is the same bit by bit whatever the number of threads, on one machine and on a cluster whose
     workers calculate alike; where they do not, a warning says so. After a kill the same call goes on, from
     what lies in a folder beside the map until it is whole.
 
@@ -77,13 +77,13 @@ def grow(
     charts
         Of the map; a third of the views when None, and `MOST_CHARTS` at most.
     epoch
-        Views of an epoch where one process learns; `EPOCH` when None, or all when there are fewer.
+        Views of an epoch where one thread learns; `EPOCH` when None, or all when there are fewer.
     motion, camera, nose, body
         The animal, and how it moves.
     seed
         Varies walks, noses, initial weights and the order of views, never the room.
-    workers
-        Processes on this machine; as many as cores when None.
+    threads
+        How many on this machine; as many as cores when None.
     scheduler
         Address of a Dask scheduler, whose workers do the shares instead; they may come and go.
     progress
@@ -95,12 +95,14 @@ def grow(
     ------
     ArenaError, CogmapError
         For what cannot be, before anything is done; an `out` that exists, or where another map grows; a
-        process that was killed; a scheduler that does not answer.
+        scheduler that does not answer, or whose workers are killed over one share.
     """
     explorers, views = checked_count("explorers", explorers), checked_count("views", views)
-    workers = None if workers is None else checked_count("workers", workers)
-    if workers is not None and scheduler is not None:
-        raise CogmapError("workers are counted on this machine and a scheduler has its own; give one of them")
+    threads = None if threads is None else checked_count("threads", threads)
+    if threads is not None and scheduler is not None:
+        raise CogmapError(
+            "threads are those of this machine, and a scheduler has its workers; give one of them"
+        )
     if views < explorers:
         raise CogmapError(f"there are {views} views for {explorers} explorers; give each one at least")
     if not isinstance(body, Disc):
@@ -123,7 +125,7 @@ def grow(
     if not checkpoint.folder.exists():
         check_absent(path, CogmapError)
     crew: Crew = (
-        partial(in_threads, workers=workers)
+        partial(in_threads, threads=threads)
         if scheduler is None
         else partial(on_cluster, do, address=scheduler, wording=CREW)
     )
@@ -138,11 +140,11 @@ def grow(
     return grown
 
 
-def in_threads(tasks: Iterable[Task], *, workers: int | None) -> Iterator[Outcome]:
+def in_threads(tasks: Iterable[Task], *, threads: int | None) -> Iterator[Outcome]:
     """Do tasks in threads of this process: its libraries and the map are there once for all."""
     # said before threads begin, as each would set what is one for all of them
     with one_thread():
-        yield from in_order(do, tasks, workers)
+        yield from in_order(do, tasks, threads)
 
 
 def usual_charts(views: int) -> int:

@@ -1,4 +1,4 @@
-"""The growth of a map: through its stages, in some of which one process learns, and in most all of them."""
+"""The growth of a map: through its stages, in some of which one thread learns, and in most all of them."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from neurons.network import Network
 from neurons.stages import CodedStage, RecallStage, Stage, chosen
 
 PIECE = 1024
-"""Views that one process learns at a time; then it may put down how far it has come."""
+"""Views that one thread learns at a time; then it may put down how far it has come."""
 EVERY = 20.0
 """Seconds after which it does, which takes some tenths of a second."""
 WAYS, CODES, RECALLED = "ways", "codes", "recalled"

@@ -1,4 +1,4 @@
-"""What processes do for a map that grows: each task is a share, and knows nothing of the others."""
+"""What threads do for a map that grows: each task is a share, and knows nothing of the others."""
 
 from __future__ import annotations
 
@@ -131,7 +131,7 @@ def map_at(path: Path) -> CognitiveMap:
 
 @contextmanager
 def _one_painter() -> Iterator[None]:
-    """Paint on one thread, as other processes work beside this one."""
+    """Paint on one thread, as others work beside this one."""
     threads = numba.get_num_threads()
     numba.set_num_threads(1)
     try:

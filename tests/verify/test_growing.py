@@ -100,7 +100,7 @@ def test_a_worker_that_is_killed_half_way_changes_nothing(tmp_path: Path) -> Non
         command = ["grow", "furnished", "--out", tmp_path / name, *small, *words]
         return Forked("cogmap.cli:main", command, environment, tmp_path / f"said-{name}")
 
-    alone = start("alone", "--workers", 1)
+    alone = start("alone", "--threads", 1)
     _, err = alone.communicate(timeout=1200)
     assert alone.poll() == 0, err
     with clusters.cluster(tmp_path, environment, workers=2) as (address, processes):

@@ -10,7 +10,7 @@ from cogmap.growing.work import Outcome, Task, do
 
 SMALL: dict[str, Any] = {
     "explorers": 5, "views": 803, "charts": 60, "epoch": 400, "components": 10, "place_cells": 12,
-    "heading_cells": 8, "camera": Camera.panoramic(90, 15), "workers": 1,
+    "heading_cells": 8, "camera": Camera.panoramic(90, 15), "threads": 1,
 }  # fmt: skip
 """A map of few charts, which tells nobody where it is."""
 

@@ -65,7 +65,7 @@ def test_the_map_is_that_of_the_usual_means_but_for_rounding(tmp_path: Path) -> 
 def test_the_same_bytes_whoever_is_done_first(
     undisturbed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(growing, "on_this_machine", lambda _, tasks, **__: backwards(tasks))
+    monkeypatch.setattr(growing, "in_threads", lambda tasks, **_: backwards(tasks))
     grown(tmp_path / "map")
     assert weights(tmp_path / "map") == weights(undisturbed)
 
@@ -112,7 +112,7 @@ def test_what_is_merged_is_not_made_again_at_the_end(
         if place == Place("afferents", 3):
             raise Killed
 
-    def noted(_: Any, tasks: Any, **__: Any) -> Any:
+    def noted(tasks: Any, **_: Any) -> Any:
         for task in tasks:
             done.append((task.work.__name__, task.number))
             yield do(task)
@@ -120,7 +120,7 @@ def test_what_is_merged_is_not_made_again_at_the_end(
     with monkeypatch.context() as patch, pytest.raises(Killed):
         patch.setattr(Checkpoint, "save", save_and_die)
         grown(tmp_path / "map")
-    monkeypatch.setattr(growing, "on_this_machine", noted)
+    monkeypatch.setattr(growing, "in_threads", noted)
     grown(tmp_path / "map")
     works = ("walk_share", "code_share", "recall_share", "learn_share")
     assert done == [(work, number) for work in works for number in (3, 4)]
@@ -197,7 +197,7 @@ def test_another_map_that_grows_there_is_not_touched(tmp_path: Path) -> None:
         ({"charts": 900}, "803 views for 900 charts"),
         ({"epoch": 804}, "an epoch is 804 views and there are 803"),
         ({"seed": -1}, "seed is -1"),
-        ({"workers": 0}, "workers is 0"),
+        ({"threads": 0}, "threads is 0"),
         ({"scheduler": "tcp://127.0.0.1:9"}, "give one of them"),
         ({"body": Arm()}, "of kind Arm; many explorers are discs"),
     ],
@@ -211,12 +211,12 @@ def test_what_cannot_be_is_refused_before_anything_is_done(
 
 
 def test_unlike_arithmetic_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def unlike(_: Any, tasks: Any, **__: Any) -> Any:
+    def unlike(tasks: Any, **_: Any) -> Any:
         for task in tasks:
             outcome = do(task)
             yield Outcome(outcome.number, outcome.found, "another")
 
-    monkeypatch.setattr(growing, "on_this_machine", unlike)
+    monkeypatch.setattr(growing, "in_threads", unlike)
     with pytest.warns(UnlikeArithmeticWarning, match="done in 2 arithmetics"):
         grown(tmp_path / "map", views=300, charts=30, epoch=300)
 

@@ -1,4 +1,4 @@
-"""Maps grown by commands of their own: killed, by two processes, on Dask workers that are killed."""
+"""Maps grown by commands of their own: killed, by two threads, on Dask workers that are killed."""
 
 import json
 import os
@@ -56,16 +56,16 @@ def lent(folder: Path) -> list[Path]:
     return list((folder / "map.growing").glob("lent-*"))
 
 
-def test_two_processes_give_the_same_bytes_though_the_command_is_killed(
+def test_two_threads_give_the_same_bytes_though_the_command_is_killed(
     undisturbed: Path, tmp_path: Path
 ) -> None:
-    process = start(tmp_path, "--workers", 2)
+    process = start(tmp_path, "--threads", 2)
     wait_for((tmp_path / "map.growing" / "now").exists, process)
     wait_for(lambda: lent(tmp_path), process)
     os.killpg(process.pid, signal.SIGKILL)
     process.communicate()
     assert process.poll() == -signal.SIGKILL
-    process = start(tmp_path, "--workers", 2)
+    process = start(tmp_path, "--threads", 2)
     out, err = process.communicate(timeout=500)
     assert process.poll() == 0, err
     assert json.loads(out)["map"] == str(tmp_path / "map")
