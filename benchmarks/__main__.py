@@ -29,6 +29,7 @@ SUBJECTS = (
     "manifold",
     "homology",
     "demonstrating",
+    "living",
     "sweeping",
     "scaling",
 )

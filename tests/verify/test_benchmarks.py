@@ -40,6 +40,7 @@ BARS: dict[str, list[tuple[str, str, Any]]] = {
         ("demo/peak_memory_bytes", "≤", 1_500_000_000),
         ("compilation/seconds", "≤", 8),
     ],
+    "living": [("click_median_ms", "≤", 100), ("click_p95_ms", "≤", 100), ("driven_hz", "≥", 20)],
     "streaming": [
         ("views", "=", 1_000_000),
         ("seconds", "≤", 480),

@@ -30,7 +30,7 @@ BARS = [
     ("decoded_from_17000/heading_median_deg", "≤", 0.4),
     ("decoded_from_17000/metric_map_median_m", "≤", 0.01),
     ("seconds", "≤", 480),
-    ("peak_bytes", "≤", 2 * 10**9),
+    ("peak_over_before_bytes", "≤", 10**9),
 ]
 
 
@@ -47,8 +47,15 @@ def measure(folder: Path, room: str = "furnished", seed: int = 0, views: int = V
         assert process.stdout is not None
         told = json.loads(process.stdout.read())
     figures = {"seconds": seconds, "by_stage": told["seconds"], "charts": told["charts"]}
-    figures |= {"trusted": told["trusted"], "peak_bytes": peak}
+    figures |= {"trusted": told["trusted"], "peak_bytes": peak, "peak_over_before_bytes": peak - imported()}
     return {**figures, **scored(folder / "map", room, seed, views)}
+
+
+def imported() -> int:
+    """Count what a process holds that has imported what it needs, and done nothing."""
+    said = "import psutil, cogmap.growing.growing; print(psutil.Process().memory_full_info().pss)"
+    run = subprocess.run([sys.executable, "-c", said], cwd=ROOT, capture_output=True, text=True, check=True)
+    return int(run.stdout)
 
 
 def memory(process: psutil.Process) -> int:
