@@ -19,10 +19,10 @@ STEP = 0.04
 
 
 def living() -> Figures:
-    """Answer clicks all over the platform, then drive on: all that the panels show, before a browser draws it.
+    """Answer clicks all over the platform, then drive on: all that panels show, before a browser draws it.
 
-    Physics, the view, what the map perceives of it, the view that it imagines there, surprise, and all of them
-    as the JSON and the JPEG that a browser takes.
+    Physics, the view, what the map perceives of it, the view that it imagines there, surprise, and all of
+    them as the JSON and the JPEG that a browser takes. Frames are steps of 40 ms.
     """
     camera = Camera.panoramic()
     walk = explore(ROOM, Brownian(), camera, views=VIEWS, seed=0)
