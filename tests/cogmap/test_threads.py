@@ -79,3 +79,16 @@ def test_what_fails_in_a_thread_fails_where_it_is_taken() -> None:
     assert [next(found), next(found)] == [0.5, 1]
     with pytest.raises(ZeroDivisionError):
         next(found)
+
+
+def test_a_thread_that_is_one_of_many_starts_no_others() -> None:
+    def work(_: int) -> tuple[int, list[int]]:
+        return get_ident(), list(in_order(lambda _: get_ident(), range(4)))
+
+    for here, inner in in_order(work, range(6)):
+        assert inner == [here] * 4
+        assert here != get_ident()
+
+
+def test_one_thread_alone_is_this_one() -> None:
+    assert list(in_order(lambda _: get_ident(), range(4), 1)) == [get_ident()] * 4

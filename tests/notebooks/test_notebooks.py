@@ -26,7 +26,7 @@ SMALL: dict[str, dict[str, Any]] = {
     "9_imagine_expect_reach": {"VIEWS": 3000, "CHARTS": 600, "WIDTH": 90},
     "10_any_body": {"VIEWS": 600},
     "11_your_own_camera_your_own_animal": {"SHUFFLES": 20},
-    "12_several_rooms": {"VIEWS": 1000, "CHARTS": 250},
+    "12_several_rooms": {"VIEWS": 2500, "CHARTS": 500, "WIDTH": 90},
 }
 
 

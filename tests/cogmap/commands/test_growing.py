@@ -19,7 +19,7 @@ def run(monkeypatch: pytest.MonkeyPatch, *words: object) -> int:
 def test_a_map_is_grown_and_told_of(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    sizes = ["--explorers", 3, "--views", 300, "--charts", 30, "--width", 90, "--height", 15, "--workers", 1]
+    sizes = ["--explorers", 3, "--views", 300, "--charts", 30, "--width", 90, "--height", 15, "--threads", 1]
     told = ["--set", "map.components=8", "--set", "motion.speed=0.3", "--set", "body.radius=0.15"]
     out = tmp_path / "map"
     assert run(monkeypatch, "open_field", "--out", out, *sizes, *told, "--nose-noise", 0.05, "--json") == 0
@@ -39,7 +39,7 @@ def test_a_map_is_grown_and_told_of(
         (["furnished", "--set", "eye.width=3"], "unknown parameter 'eye'"),
         (["furnished", "--set", "map.colour=3"], "unknown parameter 'map.colour'"),
         (["furnished", "--set", "body=arm"], "many explorers are discs"),
-        (["furnished", "--workers", 2, "--scheduler", "tcp://127.0.0.1:9"], "give one of them"),
+        (["furnished", "--threads", 2, "--scheduler", "tcp://127.0.0.1:9"], "give one of them"),
     ],
 )
 def test_what_cannot_be_is_one_sentence(
