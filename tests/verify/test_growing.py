@@ -30,6 +30,7 @@ BARS = [
     ("decoded_from_17000/heading_median_deg", "≤", 0.4),
     ("decoded_from_17000/metric_map_median_m", "≤", 0.01),
     ("seconds", "≤", 480),
+    ("peak_bytes", "≤", 2 * 10**9),
     ("peak_over_before_bytes", "≤", 10**9),
 ]
 
