@@ -1,6 +1,8 @@
 """The network: a circuit that learns in stages."""
 
+from bisect import bisect_right
 from collections.abc import Sequence
+from itertools import accumulate
 from typing import Any
 
 import torch
@@ -45,6 +47,8 @@ class Network(Circuit):
         super().__init__(features, odorants, **circuit)
         self.epoch, self.odorants = epoch, odorants
         self.stages = tuple(stages)
+        self._index = {stage.name: index for index, stage in enumerate(self.stages)}
+        self._epochs_before = [0, *accumulate(stage.epochs for stage in self.stages)]
         self.views_seen: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self.stage_index: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self._make_layers(0)
@@ -52,9 +56,8 @@ class Network(Circuit):
     @property
     def stage(self) -> Stage[Any]:
         """The stage that the next view falls into; the last one never ends."""
-        return next(
-            stage for stage in reversed(self.stages) if self.begins(stage.name) <= int(self.views_seen)
-        )
+        epochs = int(self.views_seen) // self.epoch
+        return self.stages[bisect_right(self._epochs_before[:-1], epochs) - 1]
 
     @property
     def entered(self) -> Stage[Any]:
@@ -64,16 +67,16 @@ class Network(Circuit):
     @property
     def charted(self) -> bool:
         """Whether its charts have tiled the views."""
-        return int(self.stage_index) > self._index(ChartStage.name)
+        return int(self.stage_index) > self._index[ChartStage.name]
 
     @property
     def epochs(self) -> int:
         """Epochs of all stages together."""
-        return sum(stage.epochs for stage in self.stages)
+        return self._epochs_before[-1]
 
     def begins(self, name: str) -> int:
         """How many views come before a stage."""
-        return self.epoch * sum(stage.epochs for stage in self.stages[: self._index(name)])
+        return self.epoch * self._epochs_before[self._index[name]]
 
     def see(self, strips: Float[Tensor, "views features"]) -> Any:
         """Show strips to the layers that are fixed by now: what the present stage learns from."""
@@ -95,14 +98,14 @@ class Network(Circuit):
 
     def advance_stage(self) -> None:
         """Finish the stages before the present one, each once."""
-        while int(self.stage_index) < self._index(self.stage.name):
+        while int(self.stage_index) < self._index[self.stage.name]:
             finished = self.entered
             self.stage_index += 1
             again = finished.finish(self)
             if again is not None:
-                self.stage_index.fill_(self._index(again))
+                self.stage_index.fill_(self._index[again])
                 self.views_seen.fill_(self.begins(again))
-                self._make_layers(self._index(again) + 1)
+                self._make_layers(self._index[again] + 1)
 
     def break_sequence(self) -> None:
         """Forget the last views: the next one does not follow them."""
@@ -162,9 +165,6 @@ class Network(Circuit):
             "it was given sight alone, which does not tell place from heading: both populations need a "
             "second sense that knows place but not heading; give odours, or another signal of that kind"
         )
-
-    def _index(self, name: str) -> int:
-        return [stage.name for stage in self.stages].index(name)
 
     def _make_layers(self, first: int) -> None:
         for stage in self.stages[first:]:
