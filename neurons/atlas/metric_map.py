@@ -40,9 +40,10 @@ class MetricMap(nn.Module):
     D = Σ w ū vᵀ least squares gives β = S⁻¹ Dᴴ f, and the displacements that agree best with the compass give
     f, in turn the phases of
 
-        f ← phase(D S⁻¹ Dᴴ f):
+        f ← phase(D S⁻¹ Dᴴ f + λ),
 
-    again a synchronisation, of places connected by walking. Deviations are small: they are the least squares
+    again a synchronisation, of places connected by walking; λ holds back where displacements are noisy.
+    Deviations are small: they are the least squares
     a = (Σ |u|² q qᵀ − Re E S⁻¹ Eᴴ + Λ)⁻¹ Im E β, E = Σ q ū vᵀ, in which positions give way to them. The sums
     are kept for two halves of the walk, alternating; unless the map of either foretells the displacements of
     the other, nothing is learnt, and `diagnosis` says so. Sums can be added to by a stream and merged between
@@ -64,6 +65,10 @@ class MetricMap(nn.Module):
         Prior on β, as a fraction of the mean square of a feature's displacement.
     smoothness
         Displacements that the prior on the bending of the map counts as much as.
+    noisy
+        Share of displacements not foretold at which it takes one more in each place cell to believe half of
+        the offset that they say; it grows with the square of the share. Clear smells leave .01 to .03, and
+        noisy signals up to .2, whose errors offsets would follow.
     steadiness
         Λ, how many displacements in a head-direction cell it takes to believe half of what they say.
     least_r2
@@ -87,12 +92,13 @@ class MetricMap(nn.Module):
         straight: float = 0.25,
         ridge: float = 1e-4,
         smoothness: float = 6e3,
+        noisy: float = 0.08,
         steadiness: float = 30.0,
         least_r2: float = 0.8,
     ) -> None:
         super().__init__()
         self.lag, self.straight, self.ridge, self.least_r2 = lag, straight, ridge, least_r2
-        self.smoothness, self.steadiness = smoothness, steadiness
+        self.smoothness, self.noisy, self.steadiness = smoothness, noisy, steadiness
         features = cells * (odorants + 1)
         self.spread: Tensor = nn.Buffer(torch.zeros(2, features, features, dtype=torch.double))
         self.ahead: Tensor = nn.Buffer(torch.zeros(2, cells, features, 2, dtype=torch.double))
@@ -166,7 +172,7 @@ class MetricMap(nn.Module):
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
         if min(half.pairs for half in halves) < len(self.offsets):
             return
-        prior = _Prior(self.ridge, self.smoothness, _bending(place), self.steadiness)
+        prior = _Prior(self.ridge, self.smoothness, _bending(place), 0.0, self.steadiness)
         one, other = (half.solve(prior) for half in halves)
         foretold = (
             halves[0].cross_validated_r2(other.positions, other.turns),
@@ -174,7 +180,8 @@ class MetricMap(nn.Module):
         )
         self.cross_validated_r2 = self.cross_validated_r2.new_tensor(foretold)
         if not self.diagnosis():
-            found = self._evidence(slice(0, 2)).solve(prior)
+            doubt = ((1 - sum(foretold) / 2) / self.noisy) ** 2
+            found = self._evidence(slice(0, 2)).solve(prior._replace(doubt=doubt))
             self.positions = torch.view_as_real(found.positions).float()
             self.offsets = wrap_angle(self.offsets + found.turns.angle().float())
             self.deviations = self.deviations + found.deviations.float()
@@ -243,12 +250,15 @@ class MetricMap(nn.Module):
 
 
 class _Prior(NamedTuple):
-    """What is held before anything is seen: a ridge, how little maps bend, how little compasses deviate."""
+    """What is held before anything is seen: a ridge, how little maps bend, how little a compass is off."""
 
     ridge: float
     smoothness: float
     bending: Float[Tensor, "features features"]
+    doubt: float
+    """Displacements that no offset counts as much as in each place cell,"""
     steadiness: float
+    """and no deviation in each head-direction cell."""
 
     def of(self, evidence: "_Evidence") -> Float[Tensor, "features features"]:
         """Give R, in the unit of S: the ridge grows with the walk, and smoothness does not."""
@@ -284,7 +294,7 @@ class _Evidence(NamedTuple):
         # fifty will do in a room; two that a door joins turn against each other for thousands
         for _ in range(MOST_ITERATIONS):
             # sgn(0) is 0: a cell without any displacement keeps out of it instead of turning NaN
-            before, turns = turns, torch.sgn(agreement @ turns)
+            before, turns = turns, torch.sgn(agreement @ turns + prior.doubt)
             if (turns - before).abs().max() < CONVERGED:
                 break
         positions = by_place @ turns

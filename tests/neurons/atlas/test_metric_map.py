@@ -193,7 +193,7 @@ def test_map_is_ridge_regression_and_the_share_foretold_what_it_leaves(
     metric_map = learn(cells, walked, solve=False)
     lag, straight = metric_map.lag, metric_map.straight
     evidence = metric_map._evidence(slice(0, 2))
-    prior = _Prior(ridge, smoothness, _bending(cells), 30.0)
+    prior = _Prior(ridge, smoothness, _bending(cells), 0.0, 30.0)
     positions, turns, _ = evidence.solve(prior)
     torch.testing.assert_close(turns.abs(), torch.ones(CELLS, dtype=torch.double))
     rows, wanted = [], []
@@ -274,7 +274,9 @@ def test_of_few_views_with_noise_a_map_that_hardly_bends_is_learnt(cells: PlaceC
     assert smooth.cross_validated_r2.min() > 0.9
     position, heading = smooth(cells, FACING, fresh.odour, fresh.heading - off(fresh.place))
     assert r2_score(*procrustes(fresh.place.numpy(), position.numpy())[:2]) > 0.98
-    assert spread_of_angle(fresh.heading - heading) < 0.5 * spread_of_angle(off(fresh.place))
+    assert spread_of_angle(fresh.heading - heading) < 0.65 * spread_of_angle(off(fresh.place))
+    rash = learn(cells, noisy, noisy=1e6)
+    assert rash.offsets.abs().mean() > 1.1 * smooth.offsets.abs().mean()
     order = torch.randperm(len(noisy.place), generator=torch.Generator().manual_seed(0))
     lost = noisy._replace(place=noisy.place[order], odour=noisy.odour[order])
     assert_left_out(learn(cells, lost), cells, lost.odour, "foretells")
@@ -335,6 +337,6 @@ def test_offsets_converge_behind_a_door_too() -> None:
         1.0,
         1.0,
     )
-    turns = evidence.solve(_Prior(1e-9, 0.0, torch.eye(cells).double(), 1.0)).turns
+    turns = evidence.solve(_Prior(1e-9, 0.0, torch.eye(cells).double(), 0.0, 1.0)).turns
     across = (turns[10:].mean() / turns[:10].mean()).angle().item()
     assert across == pytest.approx(0.7, abs=0.01)
