@@ -44,8 +44,8 @@ def remapping(conditions: Conditions) -> Result:
 
     The rooms are as large and share materials; some share their sources of odour. Each is learnt from its own
     walk and never visited again while others are learnt. `heading_over_alone` and `position_over_alone` are
-    errors over those of a map of that room alone, the mean of three of other initial weights, of the worst
-    room; `room_recognised` is the share of fresh
+    errors over those of a map of that room alone, the mean of three of other initial weights as far as they
+    are trusted, of the worst room; `room_recognised` is the share of fresh
     views of the worst room that sight alone takes for it. Population vectors of place cells are
     correlated place by place: between rooms (`between_correlation`, the mean over pairs), within a room
     between two fresh walks at the end, and on return (`return_correlation`, of the worst room) between a
@@ -139,9 +139,10 @@ def _compared(number: int, trial: Trial, there: Visit, back: Visit, before: cell
 
 
 def _alone(trial: Trial, extra: int) -> dict[str, float]:
-    """Score a map of one room alone, of initial weights by another seed."""
-    blank = blank_map(replace(trial.conditions, seed=trial.conditions.seed + extra))
-    return Visit.of(blank.fit(trial.walk.views, trial.walk.odours), trial).figures
+    """Score a map of one room alone, of initial weights by another seed; nothing where it is not trusted."""
+    cmap = blank_map(replace(trial.conditions, seed=trial.conditions.seed + extra))
+    cmap.fit(trial.walk.views, trial.walk.odours)
+    return Visit.of(cmap, trial).figures if cmap.trusted_ else {}
 
 
 def _pair(
