@@ -75,25 +75,44 @@ def nearest_points(
     Dong, Charikar & Li (2011), Efficient k-nearest neighbor graph construction for generic similarity
     measures.
     """
-    cloud = checked_cloud(cloud)
-    others = None if queries is None else checked_cloud(queries)
-    neighbours = checked_count("neighbours", neighbours)
-    check_choice("metric", metric, get_args(Metric))
-    if others is not None and others.shape[1] != cloud.shape[1]:
-        raise CogmapError(
-            f"the queries have {others.shape[1]} features but the cloud has {cloud.shape[1]}; give as many"
-        )
-    if cloud.shape[0] - (others is None) < neighbours:
-        raise CogmapError(
-            f"{cloud.shape[0]} points are too few for {neighbours} neighbours; "
-            "give more points or ask for fewer neighbours"
-        )
-    if metric == "cosine":
-        return _by_direction(cloud, others, neighbours, exact)
-    if cloud.shape[0] > exact:
-        return _by_descent(cloud, others, neighbours)
-    distances, indices = NearestNeighbors(n_neighbors=neighbours).fit(cloud).kneighbors(others)
-    return Nearest(indices, distances)
+    return PointSearch(cloud, metric=metric, exact=exact)(neighbours, queries)
+
+
+class PointSearch:
+    """Nearest neighbours in a cloud that is searched many times: it is checked and prepared once.
+
+    Parameters
+    ----------
+    cloud, metric, exact
+        As for `nearest_points`.
+    """
+
+    def __init__(self, cloud: AnyCloud, *, metric: Metric = "euclidean", exact: int = 50_000) -> None:
+        check_choice("metric", metric, get_args(Metric))
+        self._cloud, self._metric, self._exact = checked_cloud(cloud), metric, exact
+        if metric == "euclidean" and self._cloud.shape[0] <= exact:
+            self._index = NearestNeighbors().fit(self._cloud)
+
+    def __call__(self, neighbours: Whole, queries: AnyCloud | None = None) -> Nearest:
+        """Find so many neighbours of each query, or of each point of the cloud among the others."""
+        cloud, others = self._cloud, None if queries is None else checked_cloud(queries)
+        neighbours = checked_count("neighbours", neighbours)
+        if others is not None and others.shape[1] != cloud.shape[1]:
+            raise CogmapError(
+                f"the queries have {others.shape[1]} features but the cloud has {cloud.shape[1]}; "
+                "give as many"
+            )
+        if cloud.shape[0] - (others is None) < neighbours:
+            raise CogmapError(
+                f"{cloud.shape[0]} points are too few for {neighbours} neighbours; "
+                "give more points or ask for fewer neighbours"
+            )
+        if self._metric == "cosine":
+            return _by_direction(cloud, others, neighbours, self._exact)
+        if cloud.shape[0] > self._exact:
+            return _by_descent(cloud, others, neighbours)
+        distances, indices = self._index.kneighbors(others, neighbours)
+        return Nearest(indices, distances)
 
 
 def _by_direction(cloud: Checked, queries: Checked | None, neighbours: int, exact: int) -> Nearest:

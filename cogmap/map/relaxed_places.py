@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from cogmap.features.compass import turns
 from cogmap.features.panorama import PanoramaCode
 from cogmap.features.strips import strips
 from cogmap.graph.affine_weights import affine_weights
-from cogmap.graph.knn import nearest_points
+from cogmap.graph.knn import PointSearch, nearest_points
 from cogmap.map.pose_graph import PoseGraph, relax_walk
 
 NEIGHBOURS = 60
@@ -140,7 +141,7 @@ class RelaxedPlaces:
         """
         seen = strips(views)
         codes = self._code.place(seen)
-        near = nearest_points(self._code.places_, NEIGHBOURS, queries=codes)
+        near = self._search(NEIGHBOURS, codes)
         indices = _alike(near.indices, recalled, self.places_, self._usual.reach)
         weights = affine_weights(self._code.places_, indices, codes, RIDGE)
         position = np.einsum("vk,vkc->vc", weights, self.places_[indices])
@@ -160,7 +161,11 @@ class RelaxedPlaces:
     def nearest(self, views: Any) -> Int[np.ndarray, "views"]:
         """Tell which remembered view looks most like each of these from any heading."""
         seen = self._code.place(strips(views))
-        return nearest_points(self._code.places_, 1, queries=seen).indices[:, 0]
+        return self._search(1, seen).indices[:, 0]
+
+    @cached_property
+    def _search(self) -> PointSearch:
+        return PointSearch(self._code.places_)
 
     def state(self) -> dict[str, np.ndarray]:
         """Give all that was learnt, by name."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ from cogmap.errors import CogmapError
 from cogmap.features.panorama import PanoramaCode
 from cogmap.features.seam import wraps_around
 from cogmap.features.strips import strips
-from cogmap.graph.knn import Nearest, nearest_points
+from cogmap.graph.knn import Nearest, PointSearch, nearest_points
 from cogmap.inputs import checked_views
 from cogmap.navigation.weighing import Weighing, choose_weighing, likeness_weights
 
@@ -119,12 +120,16 @@ class PanoramaLocaliser:
             )
         seen = strips(views)
         places = self.code.place(seen)
-        near = nearest_points(self.code.places_, self.weighing.neighbours, queries=places)
+        near = self._search(self.weighing.neighbours, places)
         weights = self.weighing.weigh(near, self.code.places_, places, RIDGE)
         turned, unlike = self.code.turn(seen, near.indices)
         missed = _missed(self.code, near, weights, places) / self.usual.missed
         novelty = np.maximum(missed, np.sqrt(unlike / self.usual.unlike))
         return TurnedLocation(near.indices, weights, turned, likeness_weights(near), novelty)
+
+    @cached_property
+    def _search(self) -> PointSearch:
+        return PointSearch(self.code.places_)
 
 
 def _missed(

@@ -11,7 +11,7 @@ from sklearn.preprocessing import normalize
 
 from cogmap.errors import CogmapError
 from cogmap.graph import knn
-from cogmap.graph.knn import nearest_points
+from cogmap.graph.knn import Metric, PointSearch, nearest_points
 from cogmap.graph.points import Cloud
 
 
@@ -54,6 +54,20 @@ def test_cosine_neighbours_among_themselves(seed: int, neighbours: int, views: i
     np.fill_diagonal(chords, np.inf)
     found = nearest_points(cloud.toarray() if dense else cloud, neighbours, metric="cosine")
     np.testing.assert_allclose(found.distances, np.sort(chords, axis=1)[:, :neighbours], atol=1e-7)
+
+
+@pytest.mark.parametrize("metric", ["euclidean", "cosine"])
+def test_a_cloud_that_is_searched_again_and_again(metric: Metric) -> None:
+    rng = np.random.default_rng(0)
+    cloud = rng.normal(size=(80, 5))
+    search = PointSearch(cloud, metric=metric)
+    for neighbours, queries in ((3, rng.normal(size=(7, 5))), (5, rng.normal(size=(1, 5))), (4, None)):
+        found, once = (
+            search(neighbours, queries),
+            nearest_points(cloud, neighbours, queries=queries, metric=metric),
+        )
+        np.testing.assert_array_equal(found.indices, once.indices)
+        np.testing.assert_array_equal(found.distances, once.distances)
 
 
 def test_equals_are_ranked_by_index(small_blocks: None) -> None:
