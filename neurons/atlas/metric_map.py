@@ -67,11 +67,11 @@ class MetricMap(nn.Module):
         Displacements that the prior on the bending of the map counts as much as.
     noisy
         Share of displacements not foretold at which it takes one more in each place cell to believe half of
-        the offset that they say; it grows with the fourth power. Clear smells leave .01 to .03, of which
-        even the few ways through a door are to be believed, noisy signals up to .2, whose errors offsets
-        would follow.
+        the offset that they say, and twice as many of a deviation; it grows with the fourth power. Clear
+        smells leave .01 to .03, of which even the few ways through a door are to be believed; smells that
+        hardly change over half a room .1 and noisy signals .2, whose errors offsets would follow.
     steadiness
-        Λ, how many displacements in a head-direction cell it takes to believe half of what they say.
+        Λ, how many clear displacements in a head-direction cell it takes to believe half of what they say.
     least_r2
         Least share of the displacements of one half of a walk that the other half foretells, in a map worth
         having: .88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each
@@ -93,7 +93,7 @@ class MetricMap(nn.Module):
         straight: float = 0.25,
         ridge: float = 1e-4,
         smoothness: float = 6e3,
-        noisy: float = 0.12,
+        noisy: float = 0.07,
         steadiness: float = 30.0,
         least_r2: float = 0.8,
     ) -> None:
@@ -259,7 +259,7 @@ class _Prior(NamedTuple):
     doubt: float
     """Displacements that no offset counts as much as in each place cell,"""
     steadiness: float
-    """and no deviation in each head-direction cell."""
+    """and no deviation in each head-direction cell, where displacements are clear."""
 
     def of(self, evidence: "_Evidence") -> Float[Tensor, "features features"]:
         """Give R, in the unit of S: the ridge grows with the walk, and smoothness does not."""
@@ -300,7 +300,7 @@ class _Evidence(NamedTuple):
                 break
         positions = by_place @ turns
         left = self.faced - (self.facing @ by_heading).real
-        left = left + prior.steadiness * torch.eye(len(left)).to(left)
+        left = left + prior.steadiness * (1 + prior.doubt) * torch.eye(len(left)).to(left)
         return _Learnt(positions, turns, torch.linalg.solve(left, (self.facing @ positions).imag))
 
     def _placing(
