@@ -67,7 +67,7 @@ class MetricMap(nn.Module):
         Displacements that the prior on the bending of the map counts as much as.
     noisy
         Share of displacements not foretold at which it takes one more in each place cell to believe half of
-        the offset that they say, and twice as many of a deviation; it grows with the fourth power. Clear
+        the offset that they say, and twice as many of a deviation; it grows with the eighth power. Clear
         smells leave .01 to .03, of which even the few ways through a door are to be believed; smells that
         hardly change over half a room .1 and noisy signals .2, whose errors offsets would follow.
     steadiness
@@ -93,7 +93,7 @@ class MetricMap(nn.Module):
         straight: float = 0.25,
         ridge: float = 1e-4,
         smoothness: float = 6e3,
-        noisy: float = 0.07,
+        noisy: float = 0.08,
         steadiness: float = 30.0,
         least_r2: float = 0.8,
     ) -> None:
@@ -181,7 +181,7 @@ class MetricMap(nn.Module):
         )
         self.cross_validated_r2 = self.cross_validated_r2.new_tensor(foretold)
         if not self.diagnosis():
-            doubt = ((1 - sum(foretold) / 2) / self.noisy) ** 4
+            doubt = ((1 - sum(foretold) / 2) / self.noisy) ** 8
             found = self._evidence(slice(0, 2)).solve(prior._replace(doubt=doubt))
             self.positions = torch.view_as_real(found.positions).float()
             self.offsets = wrap_angle(self.offsets + found.turns.angle().float())
