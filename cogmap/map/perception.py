@@ -10,6 +10,7 @@ from jaxtyping import Float
 from torch import Tensor
 
 from cogmap.map.activity import Activity
+from neurons.angles import mean_angle
 from neurons.layers.readout import Recalled
 from neurons.network import Network
 from neurons.rooms import Rooms
@@ -33,7 +34,9 @@ def seen(
 
 def _told(network: Network, recalled: Recalled) -> tuple[Tensor, ...]:
     """Rates of both populations, heading, recalled odour and position."""
-    position, phase = network.metric_map(network.place, network.heading, recalled.odour, recalled.heading)
+    position, offset = network.metric_map(network.place, recalled.odour)
+    angle = (recalled.heading + offset)[:, None]
+    phase = mean_angle(angle, torch.ones_like(angle))
     place, heading = (cells.afferents(recalled.excited) for cells in (network.place, network.heading))
     return place, heading, phase, recalled.odour, position
 
@@ -59,7 +62,7 @@ def smelt(rooms: Rooms, log_odours: Float[Tensor, "views odorants"]) -> Activity
     for room in found.nearest.unique().tolist():
         network, here = rooms[room], found.nearest == room
         place[here] = network.place.tuning(log_odours[here])
-        position[here] = network.metric_map.locate(network.place, log_odours[here])
+        position[here] = network.metric_map(network.place, log_odours[here]).position
     return Activity(
         place=place.cpu().numpy(),
         heading=blind[:, 1:],

@@ -1,77 +1,64 @@
-"""The metric map of places, and by how much the compass is off, learnt from the order of views alone."""
+"""The metric map of places, and the compass's offset at each, learnt from the order of views alone."""
 
-from typing import NamedTuple
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple, TypeAlias
 
 import torch
 from jaxtyping import Bool, Complex, Float
 from torch import Tensor, nn
 
-from neurons.angles import mean_angle, wrap_angle
-from neurons.layers.heading_cells import HeadDirectionCells
+from neurons.angles import wrap_angle
 from neurons.layers.place_cells import PlaceCells
 
 MOST_ITERATIONS, CONVERGED = 20_000, 1e-9
 """Of the power iteration, and the change of a unit number that ends it."""
-SUMS = ("spread", "ahead", "shared", "facing", "faced", "counted", "seen")
-"""Buffers of a metric map that views add to."""
 
 
 class MetricReading(NamedTuple):
-    """What the metric map makes of smells, and of the headings that were recalled with them."""
+    """What the metric map reads off smells."""
 
     position: Float[Tensor, "views 2"]
     """In the map's own frame, in steps from view to view; NaN before it is learnt."""
-    heading: Float[Tensor, "views"]
-    """Corrected by what the compass is off there, rad in (−π, π]; as recalled before it is learnt."""
+    offset: Float[Tensor, "views"]
+    """By how much the compass is to be corrected there, rad; 0 before it is learnt."""
 
 
 class MetricMap(nn.Module):
-    """Places get positions, and the compass its errors, so that views follow each other ahead.
+    """Places get positions, and the compass an offset at each, so that views follow each other ahead.
 
-    The place cells share a smell o out as w(o), Σ w = 1, and the head-direction cells a heading θ̂ as q(θ̂).
-    Each place cell holds an affine map of its surroundings and an offset of heading f_p, |f_p| = 1, both as
-    complex numbers, and each head-direction cell a deviation a_i (rad): as a magnetic compass, this one errs
-    by where it is and by where it points.
+    The place cells share a smell o out as w(o), Σ w = 1. Each holds an affine map of its surroundings and an
+    offset of heading f_p, |f_p| = 1, both as complex numbers:
 
-        x(o) = Σ_p w_p (x_p + B_p (o − c_p)) = b(o)·β,        θ = θ̂ + arg Σ_p w_p f_p + Σ_i q_i a_i.
+        x(o) = Σ_p w_p (x_p + B_p (o − c_p)) = b(o)·β,        e^{iθ} = e^{iθ̂} f(o),  f(o) = Σ_p w_p f_p.
 
     Where a body looks it goes: for views t and t + 4 with no turn between them, v = b(o_{t+4}) − b(o_t) and u
-    the mean of e^{iθ̂} on the way, v·β should be u f. With the sums S = Σ v vᵀ + R, R the prior on β, and
-    D = Σ w ū vᵀ least squares gives β = S⁻¹ Dᴴ f, and the displacements that agree best with the compass give
-    f, in turn the phases of
+    the mean of e^{iθ̂} on the way, v·β should be u f. With the sums S = Σ v vᵀ and D = Σ w ū vᵀ least squares
+    gives β = S⁻¹ Dᴴ f, and the displacements that agree best with the compass give f, in turn the phases of
 
-        f ← phase(D S⁻¹ Dᴴ f + λ),
+        f ← phase(D S⁻¹ Dᴴ f):
 
-    again a synchronisation, of places connected by walking; λ holds back where displacements are noisy.
-    Deviations are small: they are the least squares
-    a = (Σ |u|² q qᵀ − Re E S⁻¹ Eᴴ + Λ)⁻¹ Im E β, E = Σ q ū vᵀ, in which positions give way to them. The sums
-    are kept for two halves of the walk, alternating; unless the map of either foretells the displacements of
-    the other, nothing is learnt, and `diagnosis` says so. Sums can be added to by a stream and merged between
-    maps of the same cells; in double precision, as S⁻¹ makes much of little.
+    again a synchronisation, of places connected by walking. The sums are kept for two halves of the walk,
+    alternating; unless the map of either foretells the displacements of the other, nothing is learnt, and
+    `diagnosis` says so. Sums can be added to by a stream and merged between maps of the same place cells; in
+    double precision, as S⁻¹ makes much of little.
 
-    The prior R lets the affine maps of neighbours agree where either has its middle, and costs a map that is
-    one affine map in o nothing. It counts as much as so many displacements, however many are seen: without,
-    patches follow the errors of recall, and offsets follow the patches.
+    Of few views with noisy smells each half would follow its own noise. Then the maps of all places are drawn
+    towards one for all of them, which is affine in o, x_p = x_0 + B c_p and B_p = B, for a compass that is
+    taken to be right, f = 1.
 
     Parameters
     ----------
-    cells, headings, odorants
-        Place cells, head-direction cells, and odorants.
+    cells, odorants
+        Of the place cells that it stands on.
     lag
         Steps from view to view in a displacement: long against the error of recall, short against the room.
     straight
         Largest turn per step of a displacement, rad; a look around turns more.
     ridge
-        Prior on β, as a fraction of the mean square of a feature's displacement.
-    smoothness
-        Displacements that the prior on the bending of the map counts as much as.
-    noisy
-        Share of displacements not foretold at which it takes one more in each place cell to believe half of
-        the offset that they say, and twice as many of a deviation; it grows with the eighth power. Clear
-        smells leave .01 to .03, of which even the few ways through a door are to be believed; smells that
-        hardly change over half a room .1 and noisy signals .2, whose errors offsets would follow.
-    steadiness
-        Λ, how many clear displacements in a head-direction cell it takes to believe half of what they say.
+        Prior on the map, as a fraction of the mean square of a feature's displacement.
+    stiffness
+        Prior on what is not one affine map, where `ridge` alone does not suffice.
     least_r2
         Least share of the displacements of one half of a walk that the other half foretells, in a map worth
         having: .88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each
@@ -86,106 +73,82 @@ class MetricMap(nn.Module):
     def __init__(
         self,
         cells: int,
-        headings: int,
         odorants: int,
         *,
         lag: int = 4,
         straight: float = 0.25,
-        ridge: float = 1e-4,
-        smoothness: float = 6e3,
-        noisy: float = 0.08,
-        steadiness: float = 30.0,
+        ridge: float = 1e-3,
+        stiffness: float = 10.0,
         least_r2: float = 0.8,
     ) -> None:
         super().__init__()
         self.lag, self.straight, self.ridge, self.least_r2 = lag, straight, ridge, least_r2
-        self.smoothness, self.noisy, self.steadiness = smoothness, noisy, steadiness
+        self.stiffness = stiffness
         features = cells * (odorants + 1)
         self.spread: Tensor = nn.Buffer(torch.zeros(2, features, features, dtype=torch.double))
         self.ahead: Tensor = nn.Buffer(torch.zeros(2, cells, features, 2, dtype=torch.double))
         self.shared: Tensor = nn.Buffer(torch.zeros(2, cells, cells, dtype=torch.double))
-        self.facing: Tensor = nn.Buffer(torch.zeros(2, headings, features, 2, dtype=torch.double))
-        self.faced: Tensor = nn.Buffer(torch.zeros(2, headings, headings, dtype=torch.double))
         self.counted: Tensor = nn.Buffer(torch.zeros(2, 2, dtype=torch.double))
         self.seen: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self.recent: Tensor = nn.Buffer(torch.full((lag, odorants + 1), torch.nan))
         self.cross_validated_r2: Tensor = nn.Buffer(torch.full((2,), torch.nan))
         self.positions: Tensor = nn.Buffer(torch.full((features, 2), torch.nan))
         self.offsets: Tensor = nn.Buffer(torch.zeros(cells))
-        self.deviations: Tensor = nn.Buffer(torch.zeros(headings))
 
-    def forward(
-        self,
-        place: PlaceCells,
-        heading: HeadDirectionCells,
-        log_odours: Float[Tensor, "views odorants"],
-        headings: Float[Tensor, "views"],
-    ) -> MetricReading:
-        """Tell the position of smells, and correct the headings (rad) that were recalled with them."""
+    def forward(self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]) -> MetricReading:
+        """Tell the position of smells and the offset of the compass there."""
         share, patches = _patches(place, log_odours)
-        corrected = self._corrected(share, heading.share(headings), headings)[:, None]
-        return MetricReading(patches @ self.positions, mean_angle(corrected, torch.ones_like(corrected)))
-
-    def locate(
-        self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]
-    ) -> Float[Tensor, "views 2"]:
-        """Tell the position of smells alone, as in the dark."""
-        return _patches(place, log_odours)[1] @ self.positions
+        return MetricReading(patches @ self.positions, self._offset(share))
 
     def partial_fit(
-        self,
-        place: PlaceCells,
-        heading: HeadDirectionCells,
-        log_odours: Float[Tensor, "views odorants"],
-        headings: Float[Tensor, "views"],
+        self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"], headings: Float[Tensor, "views"]
     ) -> None:
         """Add the next views of a walk, in order; they follow those of the last call."""
         walk = torch.cat([self.recent, torch.cat([log_odours, headings[:, None]], dim=1)])
         self.recent = walk[-self.lag :].clone()
         share, patches = _patches(place, walk[:, :-1])
-        faced = heading.share(walk[:, -1])
-        straight, direction = self._directions(self._corrected(share, faced, walk[:, -1]))
+        straight, direction = self._directions(walk[:, -1] + self._offset(share))
         # blocks of many times the lag, as displacements that overlap are not independent; short against a
         # walk, so that both halves see all of the room
         half = (self.seen + torch.arange(len(straight), device=straight.device)) // 128 % 2
         self.seen += len(straight)
         moved = patches[self.lag :] - patches[: -self.lag]
         # the middle of the way: its views are not those whose errors the displacement holds
-        under, towards = (
-            part[1:-1].unfold(0, self.lag - 1, 1).mean(dim=2).double() for part in (share, faced)
-        )
+        under = share[1:-1].unfold(0, self.lag - 1, 1).mean(dim=2)
         for number in (0, 1):
             mine = straight & (half == number)
-            v, u = moved[mine].double(), direction[mine].to(torch.cdouble)
+            v, w, u = moved[mine].double(), under[mine].double(), direction[mine].to(torch.cdouble)
             self.spread[number] += v.T @ v
+            # v is real: two real products, where half of a complex one would be wasted
+            back = (w[:, :, None] * torch.view_as_real(u.conj().resolve_conj())[:, None]).movedim(2, 0)
+            self.ahead[number] += (back.mT @ v).movedim(0, 2)
             # less than 1 where heading swayed on the way: |u|² weighs such a way as the fit does
             power = u.abs().square()
-            w, q = under[mine], towards[mine]
-            self.ahead[number] += _agreement(w, u, v)
-            self.facing[number] += _agreement(q, u, v)
             self.shared[number] += w.T @ (power[:, None] * w)
-            self.faced[number] += q.T @ (power[:, None] * q)
             self.counted[number] += torch.stack([power.sum(), mine.sum()])
 
     def solve(self, place: PlaceCells) -> None:
-        """Learn positions and the errors of the compass, if either half of the walk foretells the other."""
+        """Learn positions and offsets from the sums, if either half of the walk foretells the other."""
         # fewer displacements than cells leave offsets that nothing determines
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
         if min(half.pairs for half in halves) < len(self.offsets):
             return
-        prior = _Prior(self.ridge, self.smoothness, _bending(place), 0.0, self.steadiness)
-        one, other = (half.solve(prior) for half in halves)
-        foretold = (
-            halves[0].cross_validated_r2(other.positions, other.turns),
-            halves[1].cross_validated_r2(one.positions, one.turns),
-        )
+        whole = torch.eye(len(self.positions)).to(self.spread)
+        learnt = partial(_Evidence.solve, prior=self.ridge * whole)
+        foretold = _foretold(halves, learnt)
+        if min(foretold) < self.least_r2:
+            # a map that cannot bend would bend the compass in its place, which therefore stays as it is
+            stiff = partial(
+                _Evidence.without_offsets,
+                prior=self.ridge * whole + self.stiffness * (whole - _affine(place)),
+            )
+            tried = ((foretold, learnt), (_foretold(halves, stiff), stiff))
+            foretold, learnt = max(tried, key=lambda found: min(found[0]))
         self.cross_validated_r2 = self.cross_validated_r2.new_tensor(foretold)
         if not self.diagnosis():
-            doubt = ((1 - sum(foretold) / 2) / self.noisy) ** 8
-            found = self._evidence(slice(0, 2)).solve(prior._replace(doubt=doubt))
-            self.positions = torch.view_as_real(found.positions).float()
-            self.offsets = wrap_angle(self.offsets + found.turns.angle().float())
-            self.deviations = self.deviations + found.deviations.float()
+            positions, turns = learnt(self._evidence(slice(0, 2)))
+            self.positions = torch.view_as_real(positions).float()
+            self.offsets = wrap_angle(self.offsets + turns.angle().float())
 
     def check(self) -> None:
         """Learn from the sums whether displacements are still those of the map as it is."""
@@ -215,17 +178,11 @@ class MetricMap(nn.Module):
 
     def begin_again(self) -> None:
         """Forget the sums: what follows is learnt on headings that are corrected by what is known by now."""
-        for name in SUMS:
-            self.get_buffer(name).zero_()
+        for sums in (self.spread, self.ahead, self.shared, self.counted, self.seen):
+            sums.zero_()
 
-    def _corrected(
-        self,
-        share: Float[Tensor, "views cells"],
-        faced: Float[Tensor, "views headings"],
-        headings: Float[Tensor, "views"],
-    ) -> Float[Tensor, "views"]:
-        offset = torch.atan2(share @ self.offsets.sin(), share @ self.offsets.cos())
-        return headings + offset + faced @ self.deviations
+    def _offset(self, share: Float[Tensor, "views cells"]) -> Float[Tensor, "views"]:
+        return torch.atan2(share @ self.offsets.sin(), share @ self.offsets.cos())
 
     def _directions(
         self, headings: Float[Tensor, "views"]
@@ -243,77 +200,50 @@ class MetricMap(nn.Module):
             self.spread[halves].sum(dim=0),
             torch.view_as_complex(self.ahead[halves].sum(dim=0)),
             self.shared[halves].sum(dim=0),
-            torch.view_as_complex(self.facing[halves].sum(dim=0)),
-            self.faced[halves].sum(dim=0),
             power,
             pairs,
         )
 
 
-class _Prior(NamedTuple):
-    """What is held before anything is seen: a ridge, how little maps bend, how little a compass is off."""
-
-    ridge: float
-    smoothness: float
-    bending: Float[Tensor, "features features"]
-    doubt: float
-    """Displacements that no offset counts as much as in each place cell,"""
-    steadiness: float
-    """and no deviation in each head-direction cell, where displacements are clear."""
-
-    def of(self, evidence: "_Evidence") -> Float[Tensor, "features features"]:
-        """Give R, in the unit of S: the ridge grows with the walk, and smoothness does not."""
-        ridge = self.ridge * torch.eye(len(self.bending)).to(self.bending)
-        bending = self.smoothness / evidence.pairs * self.bending
-        return evidence.spread.diagonal().mean() * (ridge + bending)
-
-
-class _Learnt(NamedTuple):
-    """β, f and a."""
-
-    positions: Complex[Tensor, "features"]
-    turns: Complex[Tensor, "cells"]
-    deviations: Float[Tensor, "headings"]
+_Learnt: TypeAlias = tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]
+"""β and f."""
 
 
 class _Evidence(NamedTuple):
-    """Sums over displacements: S, D, Σ |u|² w wᵀ, E, Σ |u|² q qᵀ, Σ |u|², and how many."""
+    """Sums over displacements: S, D, Σ |u|² w wᵀ, Σ |u|², and how many."""
 
     spread: Float[Tensor, "features features"]
     ahead: Complex[Tensor, "cells features"]
     shared: Float[Tensor, "cells cells"]
-    facing: Complex[Tensor, "headings features"]
-    faced: Float[Tensor, "headings headings"]
     power: float
     pairs: float
 
-    def solve(self, prior: _Prior) -> _Learnt:
-        """Give positions, offsets and deviations."""
-        by_place, by_heading = self._placing(prior)
+    def solve(self, prior: Float[Tensor, "features features"]) -> _Learnt:
+        """Give β and f; the prior is relative to the mean square of a feature, as sums grow with the walk."""
+        placing = self._placing(prior)
         turns = torch.ones_like(self.ahead[:, 0])
-        agreement = self.ahead @ by_place
+        agreement = self.ahead @ placing
         # fifty will do in a room; two that a door joins turn against each other for thousands
         for _ in range(MOST_ITERATIONS):
             # sgn(0) is 0: a cell without any displacement keeps out of it instead of turning NaN
-            before, turns = turns, torch.sgn(agreement @ turns + prior.doubt)
+            before, turns = turns, torch.sgn(agreement @ turns)
             if (turns - before).abs().max() < CONVERGED:
                 break
-        positions = by_place @ turns
-        left = self.faced - (self.facing @ by_heading).real
-        left = left + prior.steadiness * (1 + prior.doubt) * torch.eye(len(left)).to(left)
-        return _Learnt(positions, turns, torch.linalg.solve(left, (self.facing @ positions).imag))
+        return placing @ turns, turns
 
-    def _placing(
-        self, prior: _Prior
-    ) -> tuple[Complex[Tensor, "features cells"], Complex[Tensor, "features headings"]]:
-        """Give S⁻¹ Dᴴ and S⁻¹ Eᴴ."""
+    def without_offsets(self, prior: Float[Tensor, "features features"]) -> _Learnt:
+        """Give β for a compass that is right everywhere, f = 1."""
+        turns = torch.ones_like(self.ahead[:, 0])
+        return self._placing(prior) @ turns, turns
+
+    def _placing(self, prior: Float[Tensor, "features features"]) -> Complex[Tensor, "features cells"]:
+        """Give S⁻¹ Dᴴ."""
+        # cells that the walk never came by leave S singular
+        prior = self.spread.diagonal().mean() * prior
         # S is real: two real right-hand sides cost half of a complex system
-        both = torch.cat([self.ahead, self.facing]).mH
-        parts = torch.view_as_real(both.resolve_conj())
-        # cells that the walk never came by leave S singular without its prior
-        solved = torch.linalg.solve(self.spread + prior.of(self), parts.flatten(1)).reshape(parts.shape)
-        placing = torch.view_as_complex(solved.contiguous())
-        return placing[:, : len(self.ahead)], placing[:, len(self.ahead) :]
+        parts = torch.view_as_real(self.ahead.mH.resolve_conj())
+        solved = torch.linalg.solve(self.spread + prior, parts.flatten(1)).reshape(parts.shape)
+        return torch.view_as_complex(solved.contiguous())
 
     def cross_validated_r2(
         self, positions: Complex[Tensor, "features"], turns: Complex[Tensor, "cells"]
@@ -326,39 +256,23 @@ class _Evidence(NamedTuple):
         return 1 - float(moved + looked - 2 * both) / self.power
 
 
-def _agreement(
-    share: Float[Tensor, "ways cells"],
-    direction: Complex[Tensor, "ways"],
-    moved: Float[Tensor, "ways features"],
-) -> Float[Tensor, "cells features 2"]:
-    """Give Σ w ū vᵀ, real and imaginary part."""
-    # v is real: two real products, where half of a complex one would be wasted
-    back = share[:, :, None] * torch.view_as_real(direction.conj().resolve_conj())[:, None]
-    return (back.movedim(2, 0).mT @ moved).movedim(0, 2)
+def _foretold(halves: list[_Evidence], learn: Callable[[_Evidence], _Learnt]) -> tuple[float, float]:
+    """Share of the displacements of either half that the map of the other foretells."""
+    one, other = halves
+    return one.cross_validated_r2(*learn(other)), other.cross_validated_r2(*learn(one))
 
 
-def _bending(place: PlaceCells) -> Float[Tensor, "features features"]:
-    """Give the quadratic form of how much the affine maps of neighbours differ where either has its middle.
-
-    Σ_pq W_pq |x_p + B_p (c_q − c_p) − x_q|², W how much of a cell's middle is shared out to the other; 1 for
-    a feature on average.
-    """
+def _affine(place: PlaceCells) -> Float[Tensor, "features features"]:
+    """Project on what is one affine map for all: x_p = x_0 + B c_p, and B_p = B."""
     centres = place.centres.double()
-    near = place.share(place.centres).double()
-    near = near + near.T
     cells, odorants = centres.shape
-    # the map of p at the middle of q
-    there = nn.functional.pad(centres - centres[:, None], (1, 0), value=1.0)
-    form = centres.new_zeros(cells, odorants + 1, cells, odorants + 1)
-    own = torch.einsum("pq,pqi,pqj->pij", near, there, there)
-    own[:, 0, 0] += near.sum(dim=0)
-    each = torch.arange(cells)
-    form[each, :, each] = own
-    across = near[:, :, None] * there
-    form[:, :, :, 0] -= across.mT
-    form[:, 0] -= across.transpose(0, 1)
-    flat = form.reshape(centres.shape[0] * (odorants + 1), -1)
-    return flat / flat.diagonal().mean()
+    # columns are x_0 and, of B, one odorant after the other
+    columns = centres.new_zeros(cells, odorants + 1, odorants + 1)
+    columns[:, 0, 0] = 1
+    columns[:, 0, 1:] = centres
+    columns[:, 1:, 1:] = torch.eye(odorants).to(columns)
+    basis: Tensor = torch.linalg.qr(columns.flatten(0, 1)).Q
+    return basis @ basis.T
 
 
 def _patches(

@@ -6,7 +6,6 @@ import torch
 
 from neurons.atlas.ambiguity import far_share, poses_told
 from neurons.atlas.atlas import Atlas
-from neurons.atlas.metric_map import SUMS
 from neurons.circuit import Circuit
 from neurons.network import Network
 from neurons.stages import STAGES, OlfactionStage, Stage
@@ -171,14 +170,16 @@ def test_charts_lie_apart_as_they_compete_and_the_metric_map_begins_again() -> N
     assert told.charts.smells.any()
     assert torch.equal(told.readout.spacing, Atlas.of(told.charts.points).spacing)
     again = grown(STAGES, "corrected_metric_map").metric_map
-    assert not any(again.get_buffer(name).any() for name in SUMS)
+    assert not any(
+        sums.any() for sums in (again.spread, again.ahead, again.shared, again.counted, again.seen)
+    )
 
 
 def test_ambiguity_is_told_when_places_are_known() -> None:
     assert grown(STAGES, "corrected_metric_map").ambiguity.isnan().all()
     found = grown(STAGES, "afferents")
     smells, edges = found.readout.intercepts, Atlas.of(found.charts.points).edges
-    heading = found.metric_map(found.place, found.heading, smells, found.readout.phases).heading
+    heading = found.readout.phases + found.metric_map(found.place, smells).offset
     told = (poses_told(smells, heading, edges), found.charts.centres)
     assert found.ambiguity.isfinite().all()
     assert found.ambiguity.tolist() == pytest.approx([far_share(each, edges) for each in told])
