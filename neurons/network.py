@@ -57,7 +57,7 @@ class Network(Circuit):
     def stage(self) -> Stage[Any]:
         """The stage that the next view falls into; the last one never ends."""
         epochs = int(self.views_seen) // self.epoch
-        return self.stages[bisect_right(self._epochs_before[:-1], epochs) - 1]
+        return self.stages[bisect_right(self._epochs_before, epochs, hi=len(self.stages)) - 1]
 
     @property
     def entered(self) -> Stage[Any]:

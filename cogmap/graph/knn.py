@@ -81,6 +81,8 @@ def nearest_points(
 class PointSearch:
     """Nearest neighbours in a cloud that is searched many times: it is checked and prepared once.
 
+    But for descent, whose index is made for a number of neighbours, at every search.
+
     Parameters
     ----------
     cloud, metric, exact
@@ -89,7 +91,12 @@ class PointSearch:
 
     def __init__(self, cloud: AnyCloud, *, metric: Metric = "euclidean", exact: int = 50_000) -> None:
         check_choice("metric", metric, get_args(Metric))
-        self._cloud, self._metric, self._exact = checked_cloud(cloud), metric, exact
+        cloud = checked_cloud(cloud)
+        self._cloud, self._metric, self._exact = (
+            normalize(cloud) if metric == "cosine" else cloud,
+            metric,
+            exact,
+        )
         if metric == "euclidean" and self._cloud.shape[0] <= exact:
             self._index = NearestNeighbors().fit(self._cloud)
 
@@ -116,9 +123,10 @@ class PointSearch:
 
 
 def _by_direction(cloud: Checked, queries: Checked | None, neighbours: int, exact: int) -> Nearest:
+    """Search a cloud of unit vectors."""
     # Chord below which directions have a positive cosine beyond rounding.
     right_angle = np.sqrt(2) * (1 - 1e-6)
-    cloud, queries = normalize(cloud), None if queries is None else normalize(queries)
+    queries = None if queries is None else normalize(queries)
     if cloud.shape[0] <= exact:
         return _by_products(cloud, queries, neighbours)
     test = cloud if queries is None else queries

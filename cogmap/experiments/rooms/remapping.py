@@ -45,7 +45,7 @@ def remapping(conditions: Conditions) -> Result:
     The rooms are as large and share materials; some share their sources of odour. Each is learnt from its own
     walk and never visited again while others are learnt. `heading_over_alone` and `position_over_alone` are
     errors over those of a map of that room alone, the mean of three of other initial weights as far as they
-    are trusted, of the worst room; `room_recognised` is the share of fresh
+    are trusted, of the worst room, and NaN where one has none; `room_recognised` is the share of fresh
     views of the worst room that sight alone takes for it. Population vectors of place cells are
     correlated place by place: between rooms (`between_correlation`, the mean over pairs), within a room
     between two fresh walks at the end, and on return (`return_correlation`, of the worst room) between a
@@ -91,8 +91,8 @@ def remapping(conditions: Conditions) -> Result:
             "trusted": cmap.trusted_,
             "reason": cmap.reason_,
             "components": cmap.encode(trials[0].fresh.views[:1]).shape[1],
-            "heading_over_alone": float(rooms["heading_over_alone"].max()),
-            "position_over_alone": float(rooms["position_over_alone"].max()),
+            "heading_over_alone": float(rooms["heading_over_alone"].max(skipna=False)),
+            "position_over_alone": float(rooms["position_over_alone"].max(skipna=False)),
             "room_recognised": float(rooms["recognised"].min()),
             "between_correlation": float(pairs["correlation"].mean()),
             "largest_between_correlation": float(pairs["correlation"].max()),
