@@ -72,3 +72,8 @@ def test_rooms_are_told_apart_and_cells_remap(
     assert metrics["changes"] == {"nothing": "none", "walls and smells": "global"}
     assert list(found.tables["rooms"]["room"]) == list(HOUSE[:2])
     assert len(found.tables["pairs"]) == 1
+    # of 900 views hardly a map of a room alone is trusted, and a room without one is not passed over
+    rooms = found.tables["rooms"]
+    assert rooms["heading_alone_deg"].isna().any()
+    assert np.isnan(metrics["heading_over_alone"])
+    assert np.isnan(metrics["position_over_alone"])
