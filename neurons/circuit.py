@@ -71,7 +71,7 @@ class Circuit(nn.Module):
         self.readout = Readout(charts, components, odorants, tangents)
         self.place = PlaceCells(place_cells, charts, odorants)
         self.heading = HeadDirectionCells(heading_cells, charts, generator=generator)
-        self.metric_map = MetricMap(place_cells, odorants)
+        self.metric_map = MetricMap(place_cells, heading_cells, odorants)
         self.agreement: Tensor = nn.Buffer(torch.full((2,), torch.nan))
         self.connected: Tensor = nn.Buffer(torch.zeros((), dtype=torch.bool))
         self.spectrum: Tensor = nn.Buffer(torch.full((min(TANGENTS, components),), torch.nan))

@@ -14,6 +14,7 @@ from neurons.atlas.ambiguity import far_share, poses_told
 from neurons.atlas.atlas import Atlas
 from neurons.atlas.connection import LearntConnection
 from neurons.atlas.heading_axis import heading_axes
+from neurons.atlas.metric_map import SUMS
 from neurons.atlas.synchronisation import synchronise
 from neurons.circuit import Circuit
 from neurons.errors import NeuronsError
@@ -293,15 +294,15 @@ class MetricMapStage(RecallStage):
 
     name = "metric_map"
     in_order = True
-    sums = tuple(f"metric_map.{name}" for name in ("spread", "ahead", "shared", "counted", "seen"))
+    sums = tuple(f"metric_map.{name}" for name in SUMS)
     recent = ("metric_map.recent",)
 
     def learn(self, circuit: Circuit, batch: Batch[Recalled]) -> None:
         """Add displacements."""
-        circuit.metric_map.partial_fit(circuit.place, batch.seen.odour, batch.seen.heading)
+        circuit.metric_map.partial_fit(circuit.place, circuit.heading, batch.seen.odour, batch.seen.heading)
 
     def finish(self, circuit: Circuit) -> None:
-        """Solve for positions and offsets, and forget the sums they were made of."""
+        """Solve for positions and the compass's errors, and forget the sums they were made of."""
         circuit.metric_map.solve(circuit.place)
         circuit.metric_map.begin_again()
 
@@ -313,12 +314,12 @@ class CorrectedMetricMapStage(MetricMapStage):
     name = "corrected_metric_map"
 
     def finish(self, circuit: Circuit) -> None:
-        """Solve for positions and what is left of the offsets; let each place cell keep to one place."""
+        """Solve for positions and what is left of the errors; let each place cell keep to one place."""
         circuit.metric_map.solve(circuit.place)
         edges = Atlas.of(circuit.charts.points).edges
         smells, phases = circuit.readout.intercepts, circuit.readout.phases
         circuit.place.disambiguate(smells, phases, edges)
-        headings = phases + circuit.metric_map(circuit.place, smells).offset
+        headings = circuit.metric_map(circuit.place, circuit.heading, smells, phases).heading
         told = (poses_told(smells, headings, edges), circuit.charts.centres)
         circuit.ambiguity = circuit.ambiguity.new_tensor([far_share(each, edges) for each in told])
 
@@ -335,7 +336,7 @@ class AfferentStage(RecallStage):
     def learn(self, circuit: Circuit, batch: Batch[Recalled]) -> None:
         """Associate active charts with the rates that smell and heading demand."""
         excited, heading, odour = batch.seen.excited, batch.seen.heading, batch.seen.odour
-        corrected = heading + circuit.metric_map(circuit.place, odour).offset
+        corrected = circuit.metric_map(circuit.place, circuit.heading, odour, heading).heading
         circuit.place.afferents.partial_fit(excited, circuit.place.instruct(excited, odour))
         circuit.heading.afferents.partial_fit(excited, circuit.heading.tuning(corrected))
 

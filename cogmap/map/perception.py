@@ -10,7 +10,6 @@ from jaxtyping import Float
 from torch import Tensor
 
 from cogmap.map.activity import Activity
-from neurons.angles import mean_angle
 from neurons.layers.readout import Recalled
 from neurons.network import Network
 from neurons.rooms import Rooms
@@ -34,9 +33,7 @@ def seen(
 
 def _told(network: Network, recalled: Recalled) -> tuple[Tensor, ...]:
     """Rates of both populations, heading, recalled odour and position."""
-    position, offset = network.metric_map(network.place, recalled.odour)
-    angle = (recalled.heading + offset)[:, None]
-    phase = mean_angle(angle, torch.ones_like(angle))
+    position, phase = network.metric_map(network.place, network.heading, recalled.odour, recalled.heading)
     place, heading = (cells.afferents(recalled.excited) for cells in (network.place, network.heading))
     return place, heading, phase, recalled.odour, position
 
@@ -62,7 +59,7 @@ def smelt(rooms: Rooms, log_odours: Float[Tensor, "views odorants"]) -> Activity
     for room in found.nearest.unique().tolist():
         network, here = rooms[room], found.nearest == room
         place[here] = network.place.tuning(log_odours[here])
-        position[here] = network.metric_map(network.place, log_odours[here]).position
+        position[here] = network.metric_map.locate(network.place, log_odours[here])
     return Activity(
         place=place.cpu().numpy(),
         heading=blind[:, 1:],

@@ -16,7 +16,7 @@ from cogmap.digests import digest
 from cogmap.errors import CogmapError
 
 Kind = Literal["map", "memory", "motor", "coordinates"]
-VERSIONS: dict[Kind, int] = {"map": 7, "memory": 2, "motor": 2, "coordinates": 2}
+VERSIONS: dict[Kind, int] = {"map": 8, "memory": 2, "motor": 2, "coordinates": 2}
 WEIGHTS = "weights.safetensors"
 
 

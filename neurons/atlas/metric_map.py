@@ -1,4 +1,4 @@
-"""The metric map of places, and the compass's offset at each, learnt from the order of views alone."""
+"""The metric map of places, and by how much the compass is off, learnt from the order of views alone."""
 
 from collections.abc import Callable
 from functools import partial
@@ -8,57 +8,75 @@ import torch
 from jaxtyping import Bool, Complex, Float
 from torch import Tensor, nn
 
-from neurons.angles import wrap_angle
+from neurons.angles import mean_angle, wrap_angle
+from neurons.layers.heading_cells import HeadDirectionCells
 from neurons.layers.place_cells import PlaceCells
 
 MOST_ITERATIONS, CONVERGED = 20_000, 1e-9
 """Of the power iteration, and the change of a unit number that ends it."""
+SUMS = ("spread", "ahead", "shared", "twice", "facing", "faced", "counted", "seen")
+"""Buffers of a metric map that views add to."""
+FLATNESS = 0.1
+"""Added to the covariance of a cell's neighbours, as a fraction of its mean: smells of a room are a surface, and
+off it no neighbour tells how a map goes on."""
+SMALL = 1e-3
+"""Added to the covariance of instruments, as a fraction of their mean square: some cells are hardly passed."""
 
 
 class MetricReading(NamedTuple):
-    """What the metric map reads off smells."""
+    """What the metric map makes of smells, and of the headings that were recalled with them."""
 
     position: Float[Tensor, "views 2"]
     """In the map's own frame, in steps from view to view; NaN before it is learnt."""
-    offset: Float[Tensor, "views"]
-    """By how much the compass is to be corrected there, rad; 0 before it is learnt."""
+    heading: Float[Tensor, "views"]
+    """Corrected by what the compass is off there, rad in (−π, π]; as recalled before it is learnt."""
 
 
 class MetricMap(nn.Module):
-    """Places get positions, and the compass an offset at each, so that views follow each other ahead.
+    """Places get positions, and the compass its errors, so that views follow each other ahead.
 
-    The place cells share a smell o out as w(o), Σ w = 1. Each holds an affine map of its surroundings and an
-    offset of heading f_p, |f_p| = 1, both as complex numbers:
+    The place cells share a smell o out as w(o), Σ w = 1, and the head-direction cells a heading θ̂ as q(θ̂).
+    Each place cell holds a position x_p and an offset of heading f_p, |f_p| = 1, both as complex numbers, and
+    each head-direction cell a deviation a_i (rad): as a magnetic compass, this one errs by where it is and by
+    where it points. Around a cell the map is affine, by moving least squares on the positions of those that
+    share its smell, B_p = Σ_q K_pq x_q:
 
-        x(o) = Σ_p w_p (x_p + B_p (o − c_p)) = b(o)·β,        e^{iθ} = e^{iθ̂} f(o),  f(o) = Σ_p w_p f_p.
+        x(o) = Σ_p w_p (x_p + B_p (o − c_p)) = φ(o)·x,        θ = θ̂ + arg Σ_p w_p f_p + Σ_i q_i a_i.
 
-    Where a body looks it goes: for views t and t + 4 with no turn between them, v = b(o_{t+4}) − b(o_t) and u
-    the mean of e^{iθ̂} on the way, v·β should be u f. With the sums S = Σ v vᵀ and D = Σ w ū vᵀ least squares
-    gives β = S⁻¹ Dᴴ f, and the displacements that agree best with the compass give f, in turn the phases of
+    Where a body looks it goes: for views t and t + 4 with no turn between them, v = φ(o_{t+4}) − φ(o_t) and u
+    the mean of e^{iθ̂} on the way, v·x should be u f. With the sums S = Σ v vᵀ and D = Σ w ū vᵀ least squares
+    gives x = S⁻¹ Dᴴ f, and the displacements that agree best with the compass give f, in turn the phases of
 
         f ← phase(D S⁻¹ Dᴴ f):
 
-    again a synchronisation, of places connected by walking. The sums are kept for two halves of the walk,
-    alternating; unless the map of either foretells the displacements of the other, nothing is learnt, and
-    `diagnosis` says so. Sums can be added to by a stream and merged between maps of the same place cells; in
-    double precision, as S⁻¹ makes much of little.
+    again a synchronisation, of places connected by walking. Recalled smells err, which adds to S, and which
+    would turn the map, most where it is stretched and headings are not all alike: errors in variables. The
+    heading on the way does not err with them. It is the instrument, Z = (w Re u, w Im u): for f, S is that of
+    what Z tells of v, Σ v Zᵀ (Σ Z Zᵀ)⁻¹ Σ Z vᵀ, two-stage least squares. Deviations are small: they are the
+    least squares a = (Σ |u|² q qᵀ − Re E S⁻¹ Eᴴ + Λ)⁻¹ Im E x, E = Σ q ū vᵀ, in which positions give way to
+    them. Positions themselves are to foretell displacements of smells that err, and keep S as it is.
 
-    Of few views with noisy smells each half would follow its own noise. Then the maps of all places are drawn
-    towards one for all of them, which is affine in o, x_p = x_0 + B c_p and B_p = B, for a compass that is
-    taken to be right, f = 1.
+    The sums are kept for two halves of the walk, alternating; unless the map of either foretells the
+    displacements of the other, nothing is learnt, and `diagnosis` says so. Sums can be added to by a stream
+    and merged between maps of the same cells; in double precision, as S⁻¹ makes much of little.
+
+    Of few views with noisy smells each half would follow its own noise. Then all places are drawn towards one
+    map that is affine in o, x_p = x_0 + B c_p, for a compass that is taken to be right, f = 1.
 
     Parameters
     ----------
-    cells, odorants
-        Of the place cells that it stands on.
+    cells, headings, odorants
+        Place cells, head-direction cells, and odorants.
     lag
         Steps from view to view in a displacement: long against the error of recall, short against the room.
     straight
         Largest turn per step of a displacement, rad; a look around turns more.
     ridge
-        Prior on the map, as a fraction of the mean square of a feature's displacement.
+        Prior that neighbours lie together, as a fraction of the mean square of a feature's displacement.
     stiffness
         Prior on what is not one affine map, where `ridge` alone does not suffice.
+    steadiness
+        Λ, how many displacements in a head-direction cell it takes to believe half of what they say.
     least_r2
         Least share of the displacements of one half of a walk that the other half foretells, in a map worth
         having: .88 to .98 on walks of 6,000 views and more, at most .56 where views do not follow each
@@ -68,94 +86,125 @@ class MetricMap(nn.Module):
     ----------
     Singer (2011), Angular synchronization by eigenvectors and semidefinite programming. ACHA 30.
     Boumal (2016), Nonconvex phase synchronization. SIAM J. Optimization 26 (the power iteration).
+    Lancaster & Salkauskas (1981), Surfaces generated by moving least squares methods. Math. Comp. 37.
+    Wooldridge (2010), Econometric analysis of cross section and panel data, ch. 5 (two-stage least squares).
     """
 
     def __init__(
         self,
         cells: int,
+        headings: int,
         odorants: int,
         *,
         lag: int = 4,
         straight: float = 0.25,
         ridge: float = 1e-3,
         stiffness: float = 10.0,
+        steadiness: float = 30.0,
         least_r2: float = 0.8,
     ) -> None:
         super().__init__()
         self.lag, self.straight, self.ridge, self.least_r2 = lag, straight, ridge, least_r2
-        self.stiffness = stiffness
-        features = cells * (odorants + 1)
-        self.spread: Tensor = nn.Buffer(torch.zeros(2, features, features, dtype=torch.double))
-        self.ahead: Tensor = nn.Buffer(torch.zeros(2, cells, features, 2, dtype=torch.double))
+        self.stiffness, self.steadiness = stiffness, steadiness
+        self.spread: Tensor = nn.Buffer(torch.zeros(2, cells, cells, dtype=torch.double))
+        self.ahead: Tensor = nn.Buffer(torch.zeros(2, cells, cells, 2, dtype=torch.double))
         self.shared: Tensor = nn.Buffer(torch.zeros(2, cells, cells, dtype=torch.double))
+        self.twice: Tensor = nn.Buffer(torch.zeros(2, cells, cells, 2, dtype=torch.double))
+        self.facing: Tensor = nn.Buffer(torch.zeros(2, headings, cells, 2, dtype=torch.double))
+        self.faced: Tensor = nn.Buffer(torch.zeros(2, headings, headings, dtype=torch.double))
         self.counted: Tensor = nn.Buffer(torch.zeros(2, 2, dtype=torch.double))
         self.seen: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
         self.recent: Tensor = nn.Buffer(torch.full((lag, odorants + 1), torch.nan))
         self.cross_validated_r2: Tensor = nn.Buffer(torch.full((2,), torch.nan))
-        self.positions: Tensor = nn.Buffer(torch.full((features, 2), torch.nan))
+        self.positions: Tensor = nn.Buffer(torch.full((cells, odorants + 1, 2), torch.nan))
         self.offsets: Tensor = nn.Buffer(torch.zeros(cells))
+        self.deviations: Tensor = nn.Buffer(torch.zeros(headings))
 
-    def forward(self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]) -> MetricReading:
-        """Tell the position of smells and the offset of the compass there."""
+    def forward(
+        self,
+        place: PlaceCells,
+        heading: HeadDirectionCells,
+        log_odours: Float[Tensor, "views odorants"],
+        headings: Float[Tensor, "views"],
+    ) -> MetricReading:
+        """Tell the position of smells, and correct the headings (rad) that were recalled with them."""
         share, patches = _patches(place, log_odours)
-        return MetricReading(patches @ self.positions, self._offset(share))
+        corrected = self._corrected(share, heading.share(headings), headings)[:, None]
+        position = patches @ self.positions.flatten(0, 1)
+        return MetricReading(position, mean_angle(corrected, torch.ones_like(corrected)))
+
+    def locate(
+        self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]
+    ) -> Float[Tensor, "views 2"]:
+        """Tell the position of smells alone, as in the dark."""
+        return _patches(place, log_odours)[1] @ self.positions.flatten(0, 1)
 
     def partial_fit(
-        self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"], headings: Float[Tensor, "views"]
+        self,
+        place: PlaceCells,
+        heading: HeadDirectionCells,
+        log_odours: Float[Tensor, "views odorants"],
+        headings: Float[Tensor, "views"],
     ) -> None:
         """Add the next views of a walk, in order; they follow those of the last call."""
         walk = torch.cat([self.recent, torch.cat([log_odours, headings[:, None]], dim=1)])
         self.recent = walk[-self.lag :].clone()
         share, patches = _patches(place, walk[:, :-1])
-        straight, direction = self._directions(walk[:, -1] + self._offset(share))
+        faced = heading.share(walk[:, -1])
+        straight, direction = self._directions(self._corrected(share, faced, walk[:, -1]))
         # blocks of many times the lag, as displacements that overlap are not independent; short against a
         # walk, so that both halves see all of the room
         half = (self.seen + torch.arange(len(straight), device=straight.device)) // 128 % 2
         self.seen += len(straight)
-        moved = patches[self.lag :] - patches[: -self.lag]
+        moved = (patches[self.lag :] - patches[: -self.lag]).double() @ _ties(place).flatten(0, 1)
         # the middle of the way: its views are not those whose errors the displacement holds
-        under = share[1:-1].unfold(0, self.lag - 1, 1).mean(dim=2)
+        under, towards = (
+            part[1:-1].unfold(0, self.lag - 1, 1).mean(dim=2).double() for part in (share, faced)
+        )
         for number in (0, 1):
             mine = straight & (half == number)
-            v, w, u = moved[mine].double(), under[mine].double(), direction[mine].to(torch.cdouble)
-            self.spread[number] += v.T @ v
-            # v is real: two real products, where half of a complex one would be wasted
-            back = (w[:, :, None] * torch.view_as_real(u.conj().resolve_conj())[:, None]).movedim(2, 0)
-            self.ahead[number] += (back.mT @ v).movedim(0, 2)
+            v, w, q, u = moved[mine], under[mine], towards[mine], direction[mine].to(torch.cdouble)
             # less than 1 where heading swayed on the way: |u|² weighs such a way as the fit does
             power = u.abs().square()
+            self.spread[number] += v.T @ v
+            self.ahead[number] += _summed(w, u.conj(), v)
             self.shared[number] += w.T @ (power[:, None] * w)
+            self.twice[number] += _summed(w, u.square(), w)
+            self.facing[number] += _summed(q, u.conj(), v)
+            self.faced[number] += q.T @ (power[:, None] * q)
             self.counted[number] += torch.stack([power.sum(), mine.sum()])
 
     def solve(self, place: PlaceCells) -> None:
-        """Learn positions and offsets from the sums, if either half of the walk foretells the other."""
+        """Learn positions and the errors of the compass, if either half of the walk foretells the other."""
         # fewer displacements than cells leave offsets that nothing determines
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
         if min(half.pairs for half in halves) < len(self.offsets):
             return
-        whole = torch.eye(len(self.positions)).to(self.spread)
-        learnt = partial(_Evidence.solve, prior=self.ridge * whole)
+        near = self.ridge * _apart(place)
+        learnt = partial(_Evidence.solve, prior=near, steadiness=self.steadiness)
         foretold = _foretold(halves, learnt)
         if min(foretold) < self.least_r2:
             # a map that cannot bend would bend the compass in its place, which therefore stays as it is
             stiff = partial(
                 _Evidence.without_offsets,
-                prior=self.ridge * whole + self.stiffness * (whole - _affine(place)),
+                prior=near + self.stiffness * (torch.eye(len(near)).to(near) - _affine(place)),
             )
             tried = ((foretold, learnt), (_foretold(halves, stiff), stiff))
             foretold, learnt = max(tried, key=lambda found: min(found[0]))
         self.cross_validated_r2 = self.cross_validated_r2.new_tensor(foretold)
         if not self.diagnosis():
-            positions, turns = learnt(self._evidence(slice(0, 2)))
-            self.positions = torch.view_as_real(positions).float()
-            self.offsets = wrap_angle(self.offsets + turns.angle().float())
+            found = learnt(self._evidence(slice(0, 2)))
+            positions = torch.view_as_real(found.positions)
+            self.positions = torch.einsum("pok,kc->poc", _ties(place), positions).float()
+            self.offsets = wrap_angle(self.offsets + found.turns.angle().float())
+            self.deviations = self.deviations + found.deviations.float()
 
     def check(self) -> None:
         """Learn from the sums whether displacements are still those of the map as it is."""
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
         if self.positions.isnan().any() or min(half.pairs for half in halves) < len(self.offsets):
             return
-        positions = torch.view_as_complex(self.positions.double())
+        positions = torch.view_as_complex(self.positions[:, 0].double().contiguous())
         turns = torch.ones_like(halves[0].ahead[:, 0])  # headings have been corrected already
         found = [half.cross_validated_r2(positions, turns) for half in halves]
         self.cross_validated_r2 = self.cross_validated_r2.new_tensor(found)
@@ -178,11 +227,17 @@ class MetricMap(nn.Module):
 
     def begin_again(self) -> None:
         """Forget the sums: what follows is learnt on headings that are corrected by what is known by now."""
-        for sums in (self.spread, self.ahead, self.shared, self.counted, self.seen):
-            sums.zero_()
+        for name in SUMS:
+            self.get_buffer(name).zero_()
 
-    def _offset(self, share: Float[Tensor, "views cells"]) -> Float[Tensor, "views"]:
-        return torch.atan2(share @ self.offsets.sin(), share @ self.offsets.cos())
+    def _corrected(
+        self,
+        share: Float[Tensor, "views cells"],
+        faced: Float[Tensor, "views headings"],
+        headings: Float[Tensor, "views"],
+    ) -> Float[Tensor, "views"]:
+        offset = torch.atan2(share @ self.offsets.sin(), share @ self.offsets.cos())
+        return headings + offset + faced @ self.deviations
 
     def _directions(
         self, headings: Float[Tensor, "views"]
@@ -196,59 +251,71 @@ class MetricMap(nn.Module):
 
     def _evidence(self, halves: slice) -> "_Evidence":
         power, pairs = self.counted[halves].sum(dim=0).tolist()
-        return _Evidence(
-            self.spread[halves].sum(dim=0),
-            torch.view_as_complex(self.ahead[halves].sum(dim=0)),
-            self.shared[halves].sum(dim=0),
-            power,
-            pairs,
+        spread, shared, faced = (sums[halves].sum(dim=0) for sums in (self.spread, self.shared, self.faced))
+        ahead, twice, facing = (
+            torch.view_as_complex(sums[halves].sum(dim=0)) for sums in (self.ahead, self.twice, self.facing)
         )
+        return _Evidence(spread, ahead, shared, twice, facing, faced, power, pairs)
 
 
-_Learnt: TypeAlias = tuple[Complex[Tensor, "features"], Complex[Tensor, "cells"]]
-"""β and f."""
+class _Learnt(NamedTuple):
+    """x, f and a."""
+
+    positions: Complex[Tensor, "cells"]
+    turns: Complex[Tensor, "cells"]
+    deviations: Float[Tensor, "headings"]
 
 
 class _Evidence(NamedTuple):
-    """Sums over displacements: S, D, Σ |u|² w wᵀ, Σ |u|², and how many."""
+    """Sums over displacements: S, D, Σ |u|² w wᵀ, Σ u² w wᵀ, E, Σ |u|² q qᵀ, Σ |u|², and how many."""
 
-    spread: Float[Tensor, "features features"]
-    ahead: Complex[Tensor, "cells features"]
+    spread: Float[Tensor, "cells cells"]
+    ahead: Complex[Tensor, "cells cells"]
     shared: Float[Tensor, "cells cells"]
+    twice: Complex[Tensor, "cells cells"]
+    facing: Complex[Tensor, "headings cells"]
+    faced: Float[Tensor, "headings headings"]
     power: float
     pairs: float
 
-    def solve(self, prior: Float[Tensor, "features features"]) -> _Learnt:
-        """Give β and f; the prior is relative to the mean square of a feature, as sums grow with the walk."""
-        placing = self._placing(prior)
+    def solve(self, prior: Float[Tensor, "cells cells"], steadiness: float) -> _Learnt:
+        """Give positions, offsets and deviations; the prior is relative to the mean of S, as sums grow."""
+        prior = self.spread.diagonal().mean() * prior
+        by_place, by_heading = _solved(self._instrumented() + prior, self.ahead, self.facing)
         turns = torch.ones_like(self.ahead[:, 0])
-        agreement = self.ahead @ placing
+        agreement = self.ahead @ by_place
         # fifty will do in a room; two that a door joins turn against each other for thousands
         for _ in range(MOST_ITERATIONS):
             # sgn(0) is 0: a cell without any displacement keeps out of it instead of turning NaN
             before, turns = turns, torch.sgn(agreement @ turns)
             if (turns - before).abs().max() < CONVERGED:
                 break
-        return placing @ turns, turns
+        left = self.faced - (self.facing @ by_heading).real
+        left = left + steadiness * torch.eye(len(left)).to(left)
+        deviations = torch.linalg.solve(left, (self.facing @ (by_place @ turns)).imag)
+        (foretelling,) = _solved(self.spread + prior, self.ahead)
+        return _Learnt(foretelling @ turns, turns, deviations)
 
-    def without_offsets(self, prior: Float[Tensor, "features features"]) -> _Learnt:
-        """Give β for a compass that is right everywhere, f = 1."""
+    def without_offsets(self, prior: Float[Tensor, "cells cells"]) -> _Learnt:
+        """Give positions for a compass that is right everywhere, f = 1."""
+        (foretelling,) = _solved(self.spread + self.spread.diagonal().mean() * prior, self.ahead)
         turns = torch.ones_like(self.ahead[:, 0])
-        return self._placing(prior) @ turns, turns
+        return _Learnt(foretelling @ turns, turns, torch.zeros_like(self.faced[:, 0]))
 
-    def _placing(self, prior: Float[Tensor, "features features"]) -> Complex[Tensor, "features cells"]:
-        """Give S⁻¹ Dᴴ."""
-        # cells that the walk never came by leave S singular
-        prior = self.spread.diagonal().mean() * prior
-        # S is real: two real right-hand sides cost half of a complex system
-        parts = torch.view_as_real(self.ahead.mH.resolve_conj())
-        solved = torch.linalg.solve(self.spread + prior, parts.flatten(1)).reshape(parts.shape)
-        return torch.view_as_complex(solved.contiguous())
+    def _instrumented(self) -> Float[Tensor, "cells cells"]:
+        """Give Σ v Zᵀ (Σ Z Zᵀ)⁻¹ Σ Z vᵀ, S without the errors of v."""
+        real, imaginary = self.twice.real, self.twice.imag
+        # Re² and Im² of a number are half of |u|² ± Re u², and their product is half of Im u²
+        above = torch.cat([self.shared + real, imaginary], dim=1)
+        below = torch.cat([imaginary, self.shared - real], dim=1)
+        within = torch.cat([above, below]) / 2
+        within = within + SMALL * within.diagonal().mean() * torch.eye(len(within)).to(within)
+        across = torch.cat([self.ahead.real, -self.ahead.imag])
+        spread = across.T @ torch.linalg.solve(within, across)
+        return (spread + spread.T) / 2
 
-    def cross_validated_r2(
-        self, positions: Complex[Tensor, "features"], turns: Complex[Tensor, "cells"]
-    ) -> float:
-        """Share of Σ |u f|² that is left when Σ |v·β − u f|² is taken away, for β and f learnt elsewhere."""
+    def cross_validated_r2(self, positions: Complex[Tensor, "cells"], turns: Complex[Tensor, "cells"]) -> float:
+        """Share of Σ |u f|² that is left when Σ |v·x − u f|² is taken away, for x and f learnt elsewhere."""
         # the square multiplied out, so that sums suffice and no view need be kept; real but for rounding
         moved = (positions.conj() @ self.spread.to(torch.cdouble) @ positions).real
         looked = (turns.conj() @ self.shared.to(torch.cdouble) @ turns).real
@@ -256,29 +323,80 @@ class _Evidence(NamedTuple):
         return 1 - float(moved + looked - 2 * both) / self.power
 
 
-def _foretold(halves: list[_Evidence], learn: Callable[[_Evidence], _Learnt]) -> tuple[float, float]:
+_Learn: TypeAlias = Callable[[_Evidence], _Learnt]
+
+
+def _foretold(halves: list[_Evidence], learn: _Learn) -> tuple[float, float]:
     """Share of the displacements of either half that the map of the other foretells."""
     one, other = halves
-    return one.cross_validated_r2(*learn(other)), other.cross_validated_r2(*learn(one))
+    found = [learn(half) for half in halves]
+    return (
+        one.cross_validated_r2(found[1].positions, found[1].turns),
+        other.cross_validated_r2(found[0].positions, found[0].turns),
+    )
 
 
-def _affine(place: PlaceCells) -> Float[Tensor, "features features"]:
-    """Project on what is one affine map for all: x_p = x_0 + B c_p, and B_p = B."""
+def _solved(
+    spread: Float[Tensor, "cells cells"], *across: Complex[Tensor, "_ cells"]
+) -> tuple[Complex[Tensor, "cells _"], ...]:
+    """Give S⁻¹ Dᴴ of each D."""
+    both = torch.cat(across).mH
+    # S is real: two real right-hand sides cost half of a complex system
+    parts = torch.view_as_real(both.resolve_conj())
+    solved = torch.linalg.solve(spread, parts.flatten(1)).reshape(parts.shape)
+    return torch.view_as_complex(solved.contiguous()).split([len(each) for each in across], dim=1)
+
+
+def _summed(
+    one: Float[Tensor, "ways some"], number: Complex[Tensor, "ways"], other: Float[Tensor, "ways others"]
+) -> Float[Tensor, "some others 2"]:
+    """Give Σ number · one otherᵀ, real and imaginary part."""
+    # two real products, where half of a complex one would be wasted
+    parts = torch.view_as_real(number.resolve_conj())
+    return torch.stack([one.T @ (part[:, None] * other) for part in parts.unbind(dim=1)], dim=2)
+
+
+def _near(place: PlaceCells) -> Float[Tensor, "cells cells"]:
+    """How much of a cell's middle is shared out to another, in both directions; 0 to itself."""
+    near = place.share(place.centres).double()
+    near = near + near.T
+    return near - torch.diag(near.diagonal())
+
+
+def _ties(place: PlaceCells) -> Float[Tensor, "cells odorants+1 cells"]:
+    """Give x_p and B_p = Σ_q K_pq x_q, the least squares at a cell on its neighbours, of positions x."""
     centres = place.centres.double()
     cells, odorants = centres.shape
-    # columns are x_0 and, of B, one odorant after the other
-    columns = centres.new_zeros(cells, odorants + 1, odorants + 1)
-    columns[:, 0, 0] = 1
-    columns[:, 0, 1:] = centres
-    columns[:, 1:, 1:] = torch.eye(odorants).to(columns)
-    basis: Tensor = torch.linalg.qr(columns.flatten(0, 1)).Q
+    near = _near(place)
+    beside = centres - centres[:, None]
+    weighed = (near / near.sum(dim=1, keepdim=True).clamp(min=1e-300))[:, :, None] * beside
+    within = weighed.mT @ beside
+    mean = within.diagonal(dim1=1, dim2=2).mean(dim=1).clamp(min=1e-12)
+    within = within + FLATNESS * mean[:, None, None] * torch.eye(odorants).to(within)
+    slopes = torch.linalg.solve(within, weighed.mT)
+    own = torch.eye(cells).to(slopes)
+    return torch.cat([own[:, None], slopes - slopes.sum(dim=2, keepdim=True) * own[:, None]], dim=1)
+
+
+def _apart(place: PlaceCells) -> Float[Tensor, "cells cells"]:
+    """Give the form Σ_pq W_pq |x_p − x_q|² of how far neighbours lie apart, 1 for a cell on average."""
+    near = _near(place)
+    form = torch.diag(near.sum(dim=1)) - near
+    # where the whole lies means nothing; 0 is as good as any
+    return form / form.diagonal().mean() + 1e-6 * torch.eye(len(form)).to(form)
+
+
+def _affine(place: PlaceCells) -> Float[Tensor, "cells cells"]:
+    """Project on what is one affine map of the smells of all cells, x_p = x_0 + B c_p."""
+    centres = nn.functional.pad(place.centres.double(), (1, 0), value=1.0)
+    basis: Tensor = torch.linalg.qr(centres).Q
     return basis @ basis.T
 
 
 def _patches(
     place: PlaceCells, log_odours: Float[Tensor, "views odorants"]
 ) -> tuple[Float[Tensor, "views cells"], Float[Tensor, "views features"]]:
-    """Give the share w_p of each place cell and the features w_p (1, o − c_p)."""
+    """Give the share w_p of each place cell and w_p (1, o − c_p)."""
     share = place.share(log_odours)
     beside = nn.functional.pad(log_odours[:, None] - place.centres, (1, 0), value=1.0)
     return share, (share[:, :, None] * beside).flatten(1)

@@ -63,3 +63,7 @@ class HeadDirectionCells(nn.Module):
         """Rates in Hz that a heading demands."""
         # cos − 1 is never above 0: the peak is reached exactly, and nothing overflows whatever κ is
         return self.peak * torch.exp(self.concentration * (torch.cos(headings[:, None] - self.preferred) - 1))
+
+    def share(self, headings: Float[Tensor, "views"]) -> Float[Tensor, "views cells"]:
+        """Give each cell's part of the rate of all, r_i / Σ r."""
+        return torch.softmax(self.concentration * torch.cos(headings[:, None] - self.preferred), dim=1)

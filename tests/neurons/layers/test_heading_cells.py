@@ -36,6 +36,17 @@ def test_tuning_same_as_scipys_von_mises(concentration: float, peak: float) -> N
     torch.testing.assert_close(layer.tuning(layer.preferred).diagonal(), torch.full((10,), peak))
 
 
+@pytest.mark.parametrize("concentration", [5.0, 1000.0])
+def test_shares_are_rates_over_their_sum_however_narrow_the_tuning(concentration: float) -> None:
+    layer, probes = blank(10, concentration=concentration), headings(200)
+    shares = layer.share(probes)
+    torch.testing.assert_close(shares.sum(dim=1), torch.ones(200))
+    rates = layer.tuning(probes).double()
+    felt = rates.sum(dim=1) > 1e-20
+    trusted = rates[felt] / rates[felt].sum(dim=1, keepdim=True)
+    torch.testing.assert_close(shares[felt].double(), trusted, atol=1e-4, rtol=1e-3)
+
+
 def test_width_at_half_height() -> None:
     layer = blank(1)
     half = layer.preferred + torch.deg2rad(torch.tensor([61.0])) / 2
