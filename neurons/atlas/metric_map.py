@@ -17,10 +17,11 @@ MOST_ITERATIONS, CONVERGED = 20_000, 1e-9
 SUMS = ("spread", "ahead", "shared", "twice", "facing", "faced", "counted", "seen")
 """Buffers of a metric map that views add to."""
 FLATNESS = 0.1
-"""Added to the covariance of a cell's neighbours, as a fraction of its mean: smells of a room are a surface, and
-off it no neighbour tells how a map goes on."""
+"""Added to the covariance of a cell's neighbours, as a fraction of its mean: smells of a room are a surface,
+and off it no neighbour tells how a map goes on."""
 SMALL = 1e-3
-"""Added to the covariance of instruments, as a fraction of their mean square: some cells are hardly passed."""
+"""Added to the covariance of instruments, as a fraction of their mean square: some cells are hardly
+passed."""
 
 
 class MetricReading(NamedTuple):
@@ -282,14 +283,7 @@ class _Evidence(NamedTuple):
         """Give positions, offsets and deviations; the prior is relative to the mean of S, as sums grow."""
         prior = self.spread.diagonal().mean() * prior
         by_place, by_heading = _solved(self._instrumented() + prior, self.ahead, self.facing)
-        turns = torch.ones_like(self.ahead[:, 0])
-        agreement = self.ahead @ by_place
-        # fifty will do in a room; two that a door joins turn against each other for thousands
-        for _ in range(MOST_ITERATIONS):
-            # sgn(0) is 0: a cell without any displacement keeps out of it instead of turning NaN
-            before, turns = turns, torch.sgn(agreement @ turns)
-            if (turns - before).abs().max() < CONVERGED:
-                break
+        turns = _synchronised(self.ahead @ by_place)
         left = self.faced - (self.facing @ by_heading).real
         left = left + steadiness * torch.eye(len(left)).to(left)
         deviations = torch.linalg.solve(left, (self.facing @ (by_place @ turns)).imag)
@@ -314,7 +308,9 @@ class _Evidence(NamedTuple):
         spread = across.T @ torch.linalg.solve(within, across)
         return (spread + spread.T) / 2
 
-    def cross_validated_r2(self, positions: Complex[Tensor, "cells"], turns: Complex[Tensor, "cells"]) -> float:
+    def cross_validated_r2(
+        self, positions: Complex[Tensor, "cells"], turns: Complex[Tensor, "cells"]
+    ) -> float:
         """Share of Σ |u f|² that is left when Σ |v·x − u f|² is taken away, for x and f learnt elsewhere."""
         # the square multiplied out, so that sums suffice and no view need be kept; real but for rounding
         moved = (positions.conj() @ self.spread.to(torch.cdouble) @ positions).real
@@ -334,6 +330,18 @@ def _foretold(halves: list[_Evidence], learn: _Learn) -> tuple[float, float]:
         one.cross_validated_r2(found[1].positions, found[1].turns),
         other.cross_validated_r2(found[0].positions, found[0].turns),
     )
+
+
+def _synchronised(agreement: Complex[Tensor, "cells cells"]) -> Complex[Tensor, "cells"]:
+    """Give the unit numbers that agree best, f ← phase(A f)."""
+    turns = torch.ones_like(agreement[:, 0])
+    # fifty will do in a room; two that a door joins turn against each other for thousands
+    for _ in range(MOST_ITERATIONS):
+        # sgn(0) is 0: a cell without any displacement keeps out of it instead of turning NaN
+        before, turns = turns, torch.sgn(agreement @ turns)
+        if (turns - before).abs().max() < CONVERGED:
+            break
+    return turns
 
 
 def _solved(
@@ -363,7 +371,7 @@ def _near(place: PlaceCells) -> Float[Tensor, "cells cells"]:
     return near - torch.diag(near.diagonal())
 
 
-def _ties(place: PlaceCells) -> Float[Tensor, "cells odorants+1 cells"]:
+def _ties(place: PlaceCells) -> Float[Tensor, "cells parts cells"]:
     """Give x_p and B_p = Σ_q K_pq x_q, the least squares at a cell on its neighbours, of positions x."""
     centres = place.centres.double()
     cells, odorants = centres.shape

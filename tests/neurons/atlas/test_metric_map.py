@@ -8,14 +8,28 @@ from sklearn.linear_model import Ridge
 from sklearn.metrics import r2_score
 from torch import Tensor
 
-from neurons.atlas.metric_map import MetricMap, _affine, _Evidence, _patches
+from neurons.atlas.metric_map import (
+    FLATNESS,
+    SMALL,
+    SUMS,
+    MetricMap,
+    _affine,
+    _apart,
+    _patches,
+    _solved,
+    _synchronised,
+    _ties,
+)
+from neurons.layers.heading_cells import HeadDirectionCells
 from neurons.layers.place_cells import PlaceCells
 
 SOURCES = torch.tensor([[-0.2, -0.1], [1.2, 0.1], [0.4, 1.3]])
 STEP = 0.05
 SIDE = 9
 """Place cells along each side of the square."""
-CELLS, FEATURES = SIDE**2, 4 * SIDE**2
+CELLS = SIDE**2
+FACING = HeadDirectionCells(24, 1, generator=torch.Generator().manual_seed(0))
+FACING.preferred = torch.arange(24) * (2 * torch.pi / 24) - torch.pi
 
 
 class Walk(NamedTuple):
@@ -31,6 +45,11 @@ def smell(place: Tensor) -> Tensor:
 def off(place: Tensor) -> Tensor:
     """By how much the compass is off, rad: up to 11° each way, slowly varying."""
     return 0.2 * torch.sin(3 * place[:, 0] + 2 * place[:, 1])
+
+
+def deviation(heading: Tensor) -> Tensor:
+    """By how much it is off by where it points, rad: up to 9°."""
+    return 0.1 * torch.sin(heading) + 0.05 * torch.cos(2 * heading)
 
 
 def walk(views: int, seed: int) -> Walk:
@@ -65,7 +84,7 @@ def walked() -> Walk:
 def learn(
     cells: PlaceCells, walk: Walk, *, batch: int = 256, solve: bool = True, **settings: float
 ) -> MetricMap:
-    metric_map = MetricMap(len(cells.centres), 3, **settings)
+    metric_map = MetricMap(len(cells.centres), len(FACING.preferred), 3, **settings)
     teach(metric_map, cells, walk, batch=batch)
     if solve:
         metric_map.solve(cells)
@@ -75,7 +94,7 @@ def learn(
 def teach(metric_map: MetricMap, cells: PlaceCells, walk: Walk, *, batch: int = 256) -> None:
     learnt = walk.heading - off(walk.place)
     for odour, heading in zip(walk.odour.split(batch), learnt.split(batch), strict=True):
-        metric_map.partial_fit(cells, odour, heading)
+        metric_map.partial_fit(cells, FACING, odour, heading)
 
 
 def spread_of_angle(angle: Tensor) -> float:
@@ -89,7 +108,8 @@ def test_finds_the_map_and_the_offset(cells: PlaceCells, walked: Walk) -> None:
     metric_map, fresh = learn(cells, walked), walk(1000, 1)
     assert not metric_map.diagnosis()
     assert metric_map.cross_validated_r2.min() > 0.99
-    position, offset = metric_map(cells, fresh.odour)
+    position, corrected = metric_map(cells, FACING, fresh.odour, fresh.heading - off(fresh.place))
+    torch.testing.assert_close(metric_map.locate(cells, fresh.odour), position)
     z, true = (p.double().numpy() @ [1, 1j] for p in (position, fresh.place))
     affine = np.stack([z, np.ones_like(z)], axis=1)
     laid, *_ = np.linalg.lstsq(affine, true, rcond=None)
@@ -97,7 +117,21 @@ def test_finds_the_map_and_the_offset(cells: PlaceCells, walked: Walk) -> None:
     assert 1 - np.var(left) / np.var(true) > 0.999
     assert abs(laid[0]) == pytest.approx(metric_map.lag * STEP, rel=0.03)
     # a place averages over its surroundings, which shrinks the offset
-    assert spread_of_angle(off(fresh.place) - offset) < 0.45 * spread_of_angle(off(fresh.place))
+    assert spread_of_angle(fresh.heading - corrected) < 0.45 * spread_of_angle(off(fresh.place))
+    assert spread_of_angle(metric_map.deviations) < 0.3 * spread_of_angle(off(fresh.place))
+
+
+def test_finds_the_deviation_by_where_the_compass_points(cells: PlaceCells) -> None:
+    some = walk(6000, 0)
+    metric_map = MetricMap(CELLS, len(FACING.preferred), 3)
+    recalled = some.heading - deviation(some.heading)
+    before = spread_of_angle(some.heading - recalled)
+    for left in (0.6, 0.35):
+        metric_map.partial_fit(cells, FACING, some.odour, recalled)
+        metric_map.solve(cells)
+        metric_map.begin_again()
+        _, corrected = metric_map(cells, FACING, some.odour, recalled)
+        assert spread_of_angle(some.heading - corrected) < left * before
 
 
 def test_a_walk_elsewhere_is_told_from_one_that_the_map_foretells(cells: PlaceCells, walked: Walk) -> None:
@@ -123,68 +157,117 @@ def test_a_second_time_on_corrected_headings_the_offset_is_nearer(cells: PlaceCe
     once, fresh = learn(cells, walked), walk(1000, 1)
     twice = learn(cells, walked)
     twice.begin_again()
-    assert not any(
-        sums.any() for sums in (twice.spread, twice.ahead, twice.shared, twice.counted, twice.seen)
-    )
+    assert not any(twice.get_buffer(name).any() for name in SUMS)
     teach(twice, cells, walked)
     twice.solve(cells)
     assert not twice.diagnosis()
-    left = [spread_of_angle(off(fresh.place) - each(cells, fresh.odour).offset) for each in (once, twice)]
+    recalled = fresh.heading - off(fresh.place)
+    left = [
+        spread_of_angle(fresh.heading - each(cells, FACING, fresh.odour, recalled).heading)
+        for each in (once, twice)
+    ]
     assert left[1] < 0.75 * left[0]
+
+
+class Ways(NamedTuple):
+    """Displacements, shares of place and of heading on the way, mean headings, and the half of each."""
+
+    moved: np.ndarray
+    share: np.ndarray
+    faced: np.ndarray
+    direction: np.ndarray
+    half: np.ndarray
+
+
+def straight_ways(cells: PlaceCells, walk: Walk, lag: int = 4, straight: float = 0.25) -> Ways:
+    share, patches = (part.double().numpy() for part in _patches(cells, walk.odour))
+    weights = patches @ _ties(cells).flatten(0, 1).numpy()
+    learnt = (walk.heading - off(walk.place)).double().numpy()
+    faced = FACING.share(torch.from_numpy(learnt).float()).double().numpy()
+    found = []
+    for t in range(len(learnt) - lag):
+        turns = np.diff(learnt[t : t + lag + 1])
+        if np.abs(np.angle(np.exp(1j * turns))).max() < straight:
+            heading = np.exp(1j * learnt[t : t + lag + 1])
+            between = slice(t + 1, t + lag)
+            found.append(
+                (
+                    weights[t + lag] - weights[t],
+                    share[between].mean(axis=0),
+                    faced[between].mean(axis=0),
+                    np.mean((heading[1:] + heading[:-1]) / 2),
+                    (t + lag) // 128 % 2,
+                )
+            )
+    return Ways(*(np.array(part) for part in zip(*found, strict=True)))
 
 
 @pytest.mark.parametrize(("lag", "straight"), [(3, 0.25), (5, 0.05)])
 def test_sums_over_straight_ways_only(cells: PlaceCells, lag: int, straight: float) -> None:
     some = walk(600, 2)
     metric_map = learn(cells, some, solve=False, lag=lag, straight=straight)
-    share, patches = (part.double().numpy() for part in _patches(cells, some.odour))
-    learnt = (some.heading - off(some.place)).double().numpy()
-    spread, ahead = np.zeros((2, FEATURES, FEATURES)), np.zeros((2, CELLS, FEATURES), complex)
-    pairs = [0, 0]
-    for t in range(len(learnt) - lag):
-        turns = np.diff(learnt[t : t + lag + 1])
-        if np.abs(np.angle(np.exp(1j * turns))).max() < straight:
-            half = (t + lag) // 128 % 2
-            moved = patches[t + lag] - patches[t]
-            heading = np.exp(1j * learnt[t : t + lag + 1])
-            u = np.mean((heading[1:] + heading[:-1]) / 2)
-            spread[half] += np.outer(moved, moved)
-            ahead[half] += np.outer(share[t + 1 : t + lag].mean(axis=0) * u.conj(), moved)
-            pairs[half] += 1
-    assert metric_map.counted[:, 1].tolist() == pairs
-    assert metric_map.seen == len(learnt)
-    np.testing.assert_allclose(metric_map.spread, spread, atol=1e-4)
-    np.testing.assert_allclose(metric_map.ahead, np.stack([ahead.real, ahead.imag], axis=3), atol=1e-4)
+    ways = straight_ways(cells, some, lag, straight)
+    assert metric_map.seen == len(some.odour)
+    for half in (0, 1):
+        moved, share, faced, u = (part[ways.half == half] for part in ways[:-1])
+        back, power = u.conj()[:, None], (np.abs(u) ** 2)[:, None]
+        assert metric_map.counted[half].tolist() == pytest.approx([power.sum(), len(u)])
+        wanted = {
+            "spread": moved.T @ moved,
+            "ahead": (share * back).T @ moved,
+            "shared": share.T @ (power * share),
+            "twice": (share * u[:, None] ** 2).T @ share,
+            "facing": (faced * back).T @ moved,
+            "faced": faced.T @ (power * faced),
+        }
+        for name, sums in wanted.items():
+            mine = metric_map.get_buffer(name)[half].numpy()
+            both = np.stack([sums.real, sums.imag], axis=2) if np.iscomplexobj(sums) else sums
+            np.testing.assert_allclose(mine, both, atol=1e-4, err_msg=name)
 
 
 @pytest.mark.parametrize("ridge", [1e-3, 1.0])
 def test_map_is_ridge_regression_and_the_share_foretold_what_it_leaves(
     cells: PlaceCells, walked: Walk, ridge: float
 ) -> None:
-    metric_map = learn(cells, walked, ridge=ridge)
-    lag, straight = metric_map.lag, metric_map.straight
-    evidence = metric_map._evidence(slice(0, 2))
-    positions, turns = evidence.solve(ridge * torch.eye(FEATURES).double())
+    evidence = learn(cells, walked, solve=False)._evidence(slice(0, 2))
+    prior = ridge * _apart(cells)
+    positions, turns, _ = evidence.solve(prior, 30.0)
     torch.testing.assert_close(turns.abs(), torch.ones(CELLS, dtype=torch.double))
-    rows, wanted = [], []
-    share, patches = _patches(cells, walked.odour)
-    learnt = walked.heading - off(walked.place)
-    for t in range(len(learnt) - lag):
-        turned = learnt[t : t + lag + 1].diff()
-        if torch.atan2(turned.sin(), turned.cos()).abs().max() < straight:
-            heading = torch.polar(torch.ones(lag + 1), learnt[t : t + lag + 1])
-            f = share[t + 1 : t + lag].mean(dim=0).cdouble() @ turns
-            rows.append(patches[t + lag] - patches[t])
-            wanted.append((heading[1:] + heading[:-1]).mean().cdouble() / 2 * f)
-    v, u = torch.stack(rows), torch.stack(wanted)
-    ridge = Ridge(ridge * float(v.square().sum(dim=0).mean()), fit_intercept=False)
-    trusted = ridge.fit(v.double().numpy(), torch.view_as_real(u).numpy()).predict(v.double().numpy())
-    mine = v.cdouble() @ positions
-    np.testing.assert_allclose(torch.view_as_real(mine), trusted, atol=1e-3)
-    left = (mine - u).abs().square().sum()
-    assert evidence.cross_validated_r2(positions, turns) == pytest.approx(
-        1 - float(left) / evidence.power, abs=1e-4
-    )
+    ways = straight_ways(cells, walked)
+    wanted = ways.direction * (ways.share @ turns.numpy())
+    # in coordinates in which the prior is the identity
+    root = np.linalg.cholesky(prior.numpy() * np.square(ways.moved).sum(axis=0).mean())
+    white = np.linalg.solve(root, ways.moved.T).T
+    both = np.stack([wanted.real, wanted.imag], axis=1)
+    trusted = Ridge(1.0, fit_intercept=False, solver="svd").fit(white, both).predict(white)
+    mine = ways.moved @ positions.numpy()
+    np.testing.assert_allclose(np.stack([mine.real, mine.imag], axis=1), trusted, atol=1e-3)
+    left = np.square(np.abs(mine - wanted)).sum()
+    assert evidence.cross_validated_r2(positions, turns) == pytest.approx(1 - left / evidence.power, abs=1e-4)
+
+
+def test_for_the_compass_headings_are_instruments_of_displacements(cells: PlaceCells, walked: Walk) -> None:
+    ways = straight_ways(cells, walked)
+    toward = ways.direction[:, None] * ways.share
+    instruments = np.concatenate([toward.real, toward.imag], axis=1)
+    told = Ridge(SMALL * np.square(instruments).sum(axis=0).mean(), fit_intercept=False)
+    foretold = told.fit(instruments, ways.moved).predict(instruments)
+    found = learn(cells, walked, solve=False)._evidence(slice(0, 2))._instrumented()
+    np.testing.assert_allclose(found, foretold.T @ ways.moved, atol=2e-3)
+
+
+def test_errors_of_smell_turn_a_compass_that_is_right_less_than_least_squares_would(
+    cells: PlaceCells,
+) -> None:
+    clear = walk(12_000, 5)
+    noise = 0.12 * torch.randn(clear.odour.shape, generator=torch.Generator().manual_seed(5))
+    right = clear._replace(odour=clear.odour + noise, heading=clear.heading + off(clear.place))
+    evidence, prior = learn(cells, right, solve=False)._evidence(slice(0, 2)), 1e-3 * _apart(cells)
+    (placing,) = _solved(evidence.spread + evidence.spread.diagonal().mean() * prior, evidence.ahead)
+    turned = spread_of_angle(_synchronised(evidence.ahead @ placing).angle())
+    assert turned > 1
+    assert spread_of_angle(evidence.solve(prior, 30.0).turns.angle()) < 0.6 * turned
 
 
 @pytest.mark.parametrize("batch", [1, 2, 100])
@@ -204,17 +287,18 @@ def test_sums_of_two_walks_add_up_when_a_jump_is_told(cells: PlaceCells) -> None
     apart = [learn(cells, each, solve=False) for each in (one, other)]
     both = learn(cells, one, solve=False)
     both.recent.fill_(torch.nan)
-    both.partial_fit(cells, other.odour, other.heading - off(other.place))
-    for name in ("spread", "ahead", "shared", "counted", "seen"):
+    both.partial_fit(cells, FACING, other.odour, other.heading - off(other.place))
+    for name in SUMS:
         total = sum(getattr(metric_map, name) for metric_map in apart)
         torch.testing.assert_close(getattr(both, name), total, atol=1e-4, rtol=1e-5)
 
 
 def assert_left_out(metric_map: MetricMap, cells: PlaceCells, odour: Tensor, said: str) -> None:
     assert said in metric_map.diagnosis()
-    position, offset = metric_map(cells, odour)
+    recalled = torch.linspace(-3, 3, len(odour))
+    position, heading = metric_map(cells, FACING, odour, recalled)
     assert position.isnan().all()
-    assert not offset.any()
+    torch.testing.assert_close(heading, recalled)
 
 
 def test_shuffled_order_teaches_nothing(cells: PlaceCells, walked: Walk) -> None:
@@ -238,8 +322,8 @@ def test_of_few_views_with_noise_one_affine_map_for_all_is_learnt(cells: PlaceCe
     assert_left_out(learn(cells, noisy, stiffness=0.0), cells, noisy.odour, "foretells")
     stiff = learn(cells, noisy)
     assert not stiff.diagnosis()
-    position, offset = stiff(cells, noisy.odour)
-    assert not offset.any()
+    position, heading = stiff(cells, FACING, noisy.odour, noisy.heading)
+    torch.testing.assert_close(heading.cos(), noisy.heading.cos(), atol=1e-5, rtol=0)
     assert r2_score(*procrustes(noisy.place.numpy(), position.numpy())[:2]) > 0.95
     order = torch.randperm(len(noisy.place), generator=torch.Generator().manual_seed(0))
     lost = noisy._replace(place=noisy.place[order], odour=noisy.odour[order])
@@ -248,14 +332,41 @@ def test_of_few_views_with_noise_one_affine_map_for_all_is_learnt(cells: PlaceCe
 
 def test_affine_maps_are_what_the_stiff_prior_leaves(cells: PlaceCells) -> None:
     rng = torch.Generator().manual_seed(0)
-    start, slope = torch.randn(1, generator=rng), torch.randn(3, generator=rng)
-    affine = (
-        torch.cat([start + cells.centres @ slope[:, None], slope.expand(CELLS, 3)], dim=1).flatten().double()
-    )
+    start, slope = torch.randn(1, generator=rng).double(), torch.randn(3, generator=rng).double()
+    affine = start + cells.centres.double() @ slope
     projection = _affine(cells)
-    torch.testing.assert_close(projection @ affine, affine, atol=1e-5, rtol=1e-5)
+    torch.testing.assert_close(projection @ affine, affine)
     assert float(projection.trace()) == pytest.approx(4)
     torch.testing.assert_close(projection @ projection, projection)
+
+
+def test_around_a_cell_the_map_goes_on_as_its_neighbours_lie(cells: PlaceCells) -> None:
+    rng = torch.Generator().manual_seed(0)
+    positions, centres = torch.randn(CELLS, generator=rng).double(), cells.centres.double()
+    found = _ties(cells) @ positions
+    torch.testing.assert_close(found[:, 0], positions)
+    near = cells.share(cells.centres).double()
+    for cell in (0, 40):
+        weight = (near + near.T)[cell].clone()
+        weight[cell] = 0
+        weight /= weight.sum()
+        beside = centres - centres[cell]
+        spread = float((weight[:, None] * beside.square()).sum() / 3)
+        slope = Ridge(FLATNESS * spread, fit_intercept=False)
+        slope.fit(beside, positions - positions[cell], sample_weight=weight)
+        np.testing.assert_allclose(found[cell, 1:], slope.coef_, rtol=1e-6)
+
+
+def test_the_prior_is_how_far_neighbours_lie_apart(cells: PlaceCells) -> None:
+    positions = torch.randn(CELLS, generator=torch.Generator().manual_seed(0)).double()
+    form = _apart(cells)
+    near = cells.share(cells.centres).double()
+    near = near + near.T
+    near.fill_diagonal_(0)
+    apart = (near * (positions - positions[:, None]).square()).sum() / 2 / near.sum(dim=1).mean()
+    # and, very little, that they lie about 0
+    wanted = float(apart) + 1e-6 * float(positions.square().sum())
+    assert float(positions @ form @ positions) == pytest.approx(wanted)
 
 
 @pytest.mark.parametrize(("turn", "said"), [(0.4, "too few"), (0.1, "foretells")])
@@ -282,13 +393,8 @@ def test_offsets_converge_behind_a_door_too() -> None:
     ahead[:10, :10], ahead[10:, 10:] = 1.0, 1.0
     ahead[9, 10] = ahead[10, 9] = door
     turned = torch.polar(torch.ones(cells), torch.tensor([0.0, 0.7]).repeat_interleave(10))
-    evidence = _Evidence(
-        torch.eye(cells, dtype=torch.double),
-        (turned[:, None] * ahead.sqrt() * turned.conj()).to(torch.cdouble),
-        torch.zeros(cells, cells, dtype=torch.double),
-        1.0,
-        1.0,
+    turns = _synchronised(
+        (turned[:, None] * (ahead.sqrt() @ ahead.sqrt().T) * turned.conj()).to(torch.cdouble)
     )
-    _, turns = evidence.solve(1e-9 * torch.eye(cells).double())
     across = (turns[10:].mean() / turns[:10].mean()).angle().item()
     assert across == pytest.approx(0.7, abs=0.01)
