@@ -334,7 +334,7 @@ def _foretold(halves: list[_Evidence], learn: _Learn) -> tuple[float, float]:
 
 def _synchronised(agreement: Complex[Tensor, "cells cells"]) -> Complex[Tensor, "cells"]:
     """Give the unit numbers that agree best, f ← phase(A f)."""
-    turns = torch.ones_like(agreement[:, 0])
+    turns: Tensor = torch.ones_like(agreement[:, 0])
     # fifty will do in a room; two that a door joins turn against each other for thousands
     for _ in range(MOST_ITERATIONS):
         # sgn(0) is 0: a cell without any displacement keeps out of it instead of turning NaN
@@ -352,7 +352,8 @@ def _solved(
     # S is real: two real right-hand sides cost half of a complex system
     parts = torch.view_as_real(both.resolve_conj())
     solved = torch.linalg.solve(spread, parts.flatten(1)).reshape(parts.shape)
-    return torch.view_as_complex(solved.contiguous()).split([len(each) for each in across], dim=1)
+    sizes = [len(each) for each in across]
+    return tuple(torch.view_as_complex(solved.contiguous()).split(sizes, dim=1))
 
 
 def _summed(
