@@ -179,7 +179,7 @@ def test_ambiguity_is_told_when_places_are_known() -> None:
     assert grown(STAGES, "corrected_metric_map").ambiguity.isnan().all()
     found = grown(STAGES, "afferents")
     smells, edges = found.readout.intercepts, Atlas.of(found.charts.points).edges
-    heading = found.readout.phases + found.metric_map(found.place, smells).offset
+    heading = found.metric_map(found.place, found.heading, smells, found.readout.phases).heading
     told = (poses_told(smells, heading, edges), found.charts.centres)
     assert found.ambiguity.isfinite().all()
     assert found.ambiguity.tolist() == pytest.approx([far_share(each, edges) for each in told])

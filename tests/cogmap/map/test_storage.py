@@ -54,7 +54,7 @@ def test_nothing_is_left_when_writing_fails(tmp_path: Path) -> None:
 def test_another_version_is_told(tmp_path: Path) -> None:
     write_state(tmp_path / "map", WEIGHTS, {}, {})
     (tmp_path / "map" / "map.json").write_text('{"version": 2}', encoding="utf-8")
-    with pytest.raises(CogmapError, match="map of version 2, not 7; learn it again, or load it with"):
+    with pytest.raises(CogmapError, match="map of version 2, not 8; learn it again, or load it with"):
         read_state(tmp_path / "map")
 
 
