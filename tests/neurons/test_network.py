@@ -6,6 +6,7 @@ import torch
 
 from neurons.atlas.ambiguity import far_share, poses_told
 from neurons.atlas.atlas import Atlas
+from neurons.atlas.metric_map import SUMS
 from neurons.circuit import Circuit
 from neurons.network import Network
 from neurons.stages import STAGES, OlfactionStage, Stage
@@ -170,9 +171,7 @@ def test_charts_lie_apart_as_they_compete_and_the_metric_map_begins_again() -> N
     assert told.charts.smells.any()
     assert torch.equal(told.readout.spacing, Atlas.of(told.charts.points).spacing)
     again = grown(STAGES, "corrected_metric_map").metric_map
-    assert not any(
-        sums.any() for sums in (again.spread, again.ahead, again.shared, again.counted, again.seen)
-    )
+    assert not any(again.get_buffer(name).any() for name in SUMS)
 
 
 def test_ambiguity_is_told_when_places_are_known() -> None:
