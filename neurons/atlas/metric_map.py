@@ -99,7 +99,7 @@ class MetricMap(nn.Module):
         *,
         lag: int = 4,
         straight: float = 0.25,
-        ridge: float = 1e-3,
+        ridge: float = 3e-2,
         stiffness: float = 10.0,
         steadiness: float = 30.0,
         least_r2: float = 0.8,
