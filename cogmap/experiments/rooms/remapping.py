@@ -32,7 +32,7 @@ GLOBAL = 0.5
 RATE = 2.0
 """and by how many times as much as where nothing changes rates must differ where they have not."""
 ALONE = 3
-"""Maps of a room alone, of other initial weights: one may well be 1.5 times as good as another in its
+"""Maps of a room alone, of other initial weights: one may well be 1.4 times as good as another in its
 headings."""
 CHANGED_SEED = 5000
 """Added to the seed for walks through changed rooms."""
