@@ -314,7 +314,7 @@ def test_shuffled_order_teaches_nothing(cells: PlaceCells, walked: Walk) -> None
 @pytest.fixture(scope="module")
 def noisy() -> Walk:
     some = walk(800, 3)
-    noise = 0.06 * torch.randn(len(some.odour), 3, generator=torch.Generator().manual_seed(0))
+    noise = 0.09 * torch.randn(len(some.odour), 3, generator=torch.Generator().manual_seed(0))
     return some._replace(odour=some.odour + noise)
 
 
