@@ -24,6 +24,22 @@ function element(tag, parent, attributes = {}, text = "") {
   return made;
 }
 
+// A copy of an image with another source, decoded; itself where it has that source already, or none is given.
+async function decoded(image, source) {
+  if (!source || image.src === source) return image;
+  const made = image.cloneNode();
+  made.src = source;
+  // what cannot be decoded shows its words
+  await made.decode().catch(() => {});
+  return made;
+}
+
+function shownInstead(image, other, visible) {
+  other.style.visibility = visible ? "visible" : "hidden";
+  if (other !== image) image.replaceWith(other);
+  return other;
+}
+
 // A canvas that is as fine as the screen, and tells when it has another size.
 class Sheet {
   constructor(parent, ratio, label) {
@@ -74,6 +90,7 @@ class Page {
     Object.assign(this, { errors: [], trail: [], way: [], keys: new Set(), yaw: 0.6, pitch: 0.5, acts: 0, sent: {} });
     this.stats = { frames: 0, rate: 0, latency: null, drawn: 0 };
     this.stamps = [];
+    this.turn = Promise.resolve();
     this.build();
     this.listen();
     window.cogmap = this;
@@ -261,17 +278,25 @@ class Page {
     for (const view of views) element("img", this.strip, { src: view, alt: "a dreamt view on the way", draggable: "false" });
   }
 
-  async setFrame(frame) {
+  // Moments are shown one after the other, as they came.
+  setFrame(frame) {
+    const turn = this.turn.then(() => this.show(frame));
+    this.turn = turn.catch(() => {});
+    return turn;
+  }
+
+  // All pictures are decoded beside the page before any is changed: what changes in one go is composed once.
+  async show(frame) {
+    const views = frame.near.map(({ view }) => view);
+    const [pictures, near] = await Promise.all([
+      Promise.all(Object.entries(this.views).map(async ([name, image]) => [name, await decoded(image, frame[name])])),
+      Promise.all(this.near.map(({ image }, k) => decoded(image, views[k]))),
+    ]);
     this.frame = frame;
-    const waiting = [];
-    for (const [name, image] of Object.entries(this.views)) {
-      image.style.visibility = frame[name] ? "visible" : "hidden";
-      if (frame[name] && image.src !== frame[name]) { image.src = frame[name]; waiting.push(image.decode().catch(() => {})); }
-    }
-    this.near.forEach(({ image, text }, k) => {
-      const view = frame.near[k];
-      image.style.visibility = view ? "visible" : "hidden";
-      if (view && image.src !== view.view) { image.src = view.view; waiting.push(image.decode().catch(() => {})); }
+    for (const [name, picture] of pictures) this.views[name] = shownInstead(this.views[name], picture, frame[name]);
+    this.near.forEach((one, k) => {
+      const { text } = one, view = frame.near[k];
+      one.image = shownInstead(one.image, near[k], view);
       if (view?.joints) text.textContent = `joints ${view.joints.map((joint) => joint.toFixed(2)).join(", ")} rad`;
       else text.textContent = view ? `from ${view.pose[0].toFixed(2)}, ${view.pose[1].toFixed(2)} m, ${Math.round((view.pose[2] * 180) / Math.PI)}°` : "";
     });
@@ -283,7 +308,6 @@ class Page {
       this.way.push(frame.point);
     }
     if (this.way.length > 60) this.way.shift();
-    await Promise.all(waiting);
     this.paint();
     const now = performance.now();
     this.stamps.push(now);
