@@ -306,7 +306,8 @@ class _Evidence(NamedTuple):
         within = within + SMALL * within.diagonal().mean() * torch.eye(len(within)).to(within)
         across = torch.cat([self.ahead.real, -self.ahead.imag])
         spread = across.T @ torch.linalg.solve(within, across)
-        return (spread + spread.T) / 2
+        symmetric: Tensor = (spread + spread.T) / 2
+        return symmetric
 
     def cross_validated_r2(
         self, positions: Complex[Tensor, "cells"], turns: Complex[Tensor, "cells"]
