@@ -2,13 +2,14 @@
 
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import torch
 from jaxtyping import Bool, Complex, Float
 from torch import Tensor, nn
 
-from neurons.angles import mean_angle, wrap_angle
+from neurons.angles import wrap_angle
+from neurons.atlas.moving_least_squares import affine, apart, patches_of, ties
 from neurons.layers.heading_cells import HeadDirectionCells
 from neurons.layers.place_cells import PlaceCells
 
@@ -16,9 +17,6 @@ MOST_ITERATIONS, CONVERGED = 20_000, 1e-9
 """Of the power iteration, and the change of a unit number that ends it."""
 SUMS = ("spread", "ahead", "shared", "twice", "facing", "faced", "counted", "seen")
 """Buffers of a metric map that views add to."""
-FLATNESS = 0.1
-"""Added to the covariance of a cell's neighbours, as a fraction of its mean: smells of a room are a surface,
-and off it no neighbour tells how a map goes on."""
 SMALL = 1e-3
 """Added to the covariance of instruments, as a fraction of their mean square: some cells are hardly
 passed."""
@@ -129,16 +127,15 @@ class MetricMap(nn.Module):
         headings: Float[Tensor, "views"],
     ) -> MetricReading:
         """Tell the position of smells, and correct the headings (rad) that were recalled with them."""
-        share, patches = _patches(place, log_odours)
-        corrected = self._corrected(share, heading.share(headings), headings)[:, None]
-        position = patches @ self.positions.flatten(0, 1)
-        return MetricReading(position, mean_angle(corrected, torch.ones_like(corrected)))
+        share, patches = patches_of(place, log_odours)
+        corrected = self._corrected(share, heading.share(headings), headings)
+        return MetricReading(patches @ self.positions.flatten(0, 1), wrap_angle(corrected))
 
     def locate(
         self, place: PlaceCells, log_odours: Float[Tensor, "views odorants"]
     ) -> Float[Tensor, "views 2"]:
         """Tell the position of smells alone, as in the dark."""
-        return _patches(place, log_odours)[1] @ self.positions.flatten(0, 1)
+        return patches_of(place, log_odours)[1] @ self.positions.flatten(0, 1)
 
     def partial_fit(
         self,
@@ -150,14 +147,14 @@ class MetricMap(nn.Module):
         """Add the next views of a walk, in order; they follow those of the last call."""
         walk = torch.cat([self.recent, torch.cat([log_odours, headings[:, None]], dim=1)])
         self.recent = walk[-self.lag :].clone()
-        share, patches = _patches(place, walk[:, :-1])
+        share, patches = patches_of(place, walk[:, :-1])
         faced = heading.share(walk[:, -1])
         straight, direction = self._directions(self._corrected(share, faced, walk[:, -1]))
         # blocks of many times the lag, as displacements that overlap are not independent; short against a
         # walk, so that both halves see all of the room
         half = (self.seen + torch.arange(len(straight), device=straight.device)) // 128 % 2
         self.seen += len(straight)
-        moved = (patches[self.lag :] - patches[: -self.lag]).double() @ _ties(place).flatten(0, 1)
+        moved = (patches[self.lag :] - patches[: -self.lag]).double() @ ties(place).flatten(0, 1)
         # the middle of the way: its views are not those whose errors the displacement holds
         under, towards = (
             part[1:-1].unfold(0, self.lag - 1, 1).mean(dim=2).double() for part in (share, faced)
@@ -181,14 +178,14 @@ class MetricMap(nn.Module):
         halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
         if min(half.pairs for half in halves) < len(self.offsets):
             return
-        near = self.ridge * _apart(place)
+        near = self.ridge * apart(place)
         learnt = partial(_Evidence.solve, prior=near, steadiness=self.steadiness)
         foretold = _foretold(halves, learnt)
         if min(foretold) < self.least_r2:
             # a map that cannot bend would bend the compass in its place, which therefore stays as it is
             stiff = partial(
                 _Evidence.without_offsets,
-                prior=near + self.stiffness * (torch.eye(len(near)).to(near) - _affine(place)),
+                prior=near + self.stiffness * (torch.eye(len(near)).to(near) - affine(place)),
             )
             tried = ((foretold, learnt), (_foretold(halves, stiff), stiff))
             foretold, learnt = max(tried, key=lambda found: min(found[0]))
@@ -196,7 +193,7 @@ class MetricMap(nn.Module):
         if not self.diagnosis():
             found = learnt(self._evidence(slice(0, 2)))
             positions = torch.view_as_real(found.positions)
-            self.positions = torch.einsum("pok,kc->poc", _ties(place), positions).float()
+            self.positions = torch.einsum("pok,kc->poc", ties(place), positions).float()
             self.offsets = wrap_angle(self.offsets + found.turns.angle().float())
             self.deviations = self.deviations + found.deviations.float()
 
@@ -320,10 +317,7 @@ class _Evidence(NamedTuple):
         return 1 - float(moved + looked - 2 * both) / self.power
 
 
-_Learn: TypeAlias = Callable[[_Evidence], _Learnt]
-
-
-def _foretold(halves: list[_Evidence], learn: _Learn) -> tuple[float, float]:
+def _foretold(halves: list[_Evidence], learn: Callable[[_Evidence], _Learnt]) -> tuple[float, float]:
     """Share of the displacements of either half that the map of the other foretells."""
     one, other = halves
     found = [learn(half) for half in halves]
@@ -364,49 +358,3 @@ def _summed(
     # two real products, where half of a complex one would be wasted
     parts = torch.view_as_real(number.resolve_conj())
     return torch.stack([one.T @ (part[:, None] * other) for part in parts.unbind(dim=1)], dim=2)
-
-
-def _near(place: PlaceCells) -> Float[Tensor, "cells cells"]:
-    """How much of a cell's middle is shared out to another, in both directions; 0 to itself."""
-    near = place.share(place.centres).double()
-    near = near + near.T
-    return near - torch.diag(near.diagonal())
-
-
-def _ties(place: PlaceCells) -> Float[Tensor, "cells parts cells"]:
-    """Give x_p and B_p = Σ_q K_pq x_q, the least squares at a cell on its neighbours, of positions x."""
-    centres = place.centres.double()
-    cells, odorants = centres.shape
-    near = _near(place)
-    beside = centres - centres[:, None]
-    weighed = (near / near.sum(dim=1, keepdim=True).clamp(min=1e-300))[:, :, None] * beside
-    within = weighed.mT @ beside
-    mean = within.diagonal(dim1=1, dim2=2).mean(dim=1).clamp(min=1e-12)
-    within = within + FLATNESS * mean[:, None, None] * torch.eye(odorants).to(within)
-    slopes = torch.linalg.solve(within, weighed.mT)
-    own = torch.eye(cells).to(slopes)
-    return torch.cat([own[:, None], slopes - slopes.sum(dim=2, keepdim=True) * own[:, None]], dim=1)
-
-
-def _apart(place: PlaceCells) -> Float[Tensor, "cells cells"]:
-    """Give the form Σ_pq W_pq |x_p − x_q|² of how far neighbours lie apart, 1 for a cell on average."""
-    near = _near(place)
-    form = torch.diag(near.sum(dim=1)) - near
-    # where the whole lies means nothing; 0 is as good as any
-    return form / form.diagonal().mean() + 1e-6 * torch.eye(len(form)).to(form)
-
-
-def _affine(place: PlaceCells) -> Float[Tensor, "cells cells"]:
-    """Project on what is one affine map of the smells of all cells, x_p = x_0 + B c_p."""
-    centres = nn.functional.pad(place.centres.double(), (1, 0), value=1.0)
-    basis: Tensor = torch.linalg.qr(centres).Q
-    return basis @ basis.T
-
-
-def _patches(
-    place: PlaceCells, log_odours: Float[Tensor, "views odorants"]
-) -> tuple[Float[Tensor, "views cells"], Float[Tensor, "views features"]]:
-    """Give the share w_p of each place cell and w_p (1, o − c_p)."""
-    share = place.share(log_odours)
-    beside = nn.functional.pad(log_odours[:, None] - place.centres, (1, 0), value=1.0)
-    return share, (share[:, :, None] * beside).flatten(1)

@@ -8,18 +8,8 @@ from sklearn.linear_model import Ridge
 from sklearn.metrics import r2_score
 from torch import Tensor
 
-from neurons.atlas.metric_map import (
-    FLATNESS,
-    SMALL,
-    SUMS,
-    MetricMap,
-    _affine,
-    _apart,
-    _patches,
-    _solved,
-    _synchronised,
-    _ties,
-)
+from neurons.atlas.metric_map import SMALL, SUMS, MetricMap, _solved, _synchronised
+from neurons.atlas.moving_least_squares import apart, patches_of, ties
 from neurons.layers.heading_cells import HeadDirectionCells
 from neurons.layers.place_cells import PlaceCells
 
@@ -180,8 +170,8 @@ class Ways(NamedTuple):
 
 
 def straight_ways(cells: PlaceCells, walk: Walk, lag: int = 4, straight: float = 0.25) -> Ways:
-    share, patches = (part.double().numpy() for part in _patches(cells, walk.odour))
-    weights = patches @ _ties(cells).flatten(0, 1).numpy()
+    share, patches = (part.double().numpy() for part in patches_of(cells, walk.odour))
+    weights = patches @ ties(cells).flatten(0, 1).numpy()
     learnt = (walk.heading - off(walk.place)).double().numpy()
     faced = FACING.share(torch.from_numpy(learnt).float()).double().numpy()
     found = []
@@ -231,7 +221,7 @@ def test_map_is_ridge_regression_and_the_share_foretold_what_it_leaves(
     cells: PlaceCells, walked: Walk, ridge: float
 ) -> None:
     evidence = learn(cells, walked, solve=False)._evidence(slice(0, 2))
-    prior = ridge * _apart(cells)
+    prior = ridge * apart(cells)
     positions, turns, _ = evidence.solve(prior, 30.0)
     torch.testing.assert_close(turns.abs(), torch.ones(CELLS, dtype=torch.double))
     ways = straight_ways(cells, walked)
@@ -263,7 +253,7 @@ def test_errors_of_smell_turn_a_compass_that_is_right_less_than_least_squares_wo
     clear = walk(12_000, 5)
     noise = 0.12 * torch.randn(clear.odour.shape, generator=torch.Generator().manual_seed(5))
     right = clear._replace(odour=clear.odour + noise, heading=clear.heading + off(clear.place))
-    evidence, prior = learn(cells, right, solve=False)._evidence(slice(0, 2)), 1e-3 * _apart(cells)
+    evidence, prior = learn(cells, right, solve=False)._evidence(slice(0, 2)), 1e-3 * apart(cells)
     (placing,) = _solved(evidence.spread + evidence.spread.diagonal().mean() * prior, evidence.ahead)
     turned = spread_of_angle(_synchronised(evidence.ahead @ placing).angle())
     assert turned > 1
@@ -328,45 +318,6 @@ def test_of_few_views_with_noise_one_affine_map_for_all_is_learnt(cells: PlaceCe
     order = torch.randperm(len(noisy.place), generator=torch.Generator().manual_seed(0))
     lost = noisy._replace(place=noisy.place[order], odour=noisy.odour[order])
     assert_left_out(learn(cells, lost), cells, lost.odour, "foretells")
-
-
-def test_affine_maps_are_what_the_stiff_prior_leaves(cells: PlaceCells) -> None:
-    rng = torch.Generator().manual_seed(0)
-    start, slope = torch.randn(1, generator=rng).double(), torch.randn(3, generator=rng).double()
-    affine = start + cells.centres.double() @ slope
-    projection = _affine(cells)
-    torch.testing.assert_close(projection @ affine, affine)
-    assert float(projection.trace()) == pytest.approx(4)
-    torch.testing.assert_close(projection @ projection, projection)
-
-
-def test_around_a_cell_the_map_goes_on_as_its_neighbours_lie(cells: PlaceCells) -> None:
-    rng = torch.Generator().manual_seed(0)
-    positions, centres = torch.randn(CELLS, generator=rng).double(), cells.centres.double()
-    found = _ties(cells) @ positions
-    torch.testing.assert_close(found[:, 0], positions)
-    near = cells.share(cells.centres).double()
-    for cell in (0, 40):
-        weight = (near + near.T)[cell].clone()
-        weight[cell] = 0
-        weight /= weight.sum()
-        beside = centres - centres[cell]
-        spread = float((weight[:, None] * beside.square()).sum() / 3)
-        slope = Ridge(FLATNESS * spread, fit_intercept=False)
-        slope.fit(beside, positions - positions[cell], sample_weight=weight)
-        np.testing.assert_allclose(found[cell, 1:], slope.coef_, rtol=1e-6)
-
-
-def test_the_prior_is_how_far_neighbours_lie_apart(cells: PlaceCells) -> None:
-    positions = torch.randn(CELLS, generator=torch.Generator().manual_seed(0)).double()
-    form = _apart(cells)
-    near = cells.share(cells.centres).double()
-    near = near + near.T
-    near.fill_diagonal_(0)
-    apart = (near * (positions - positions[:, None]).square()).sum() / 2 / near.sum(dim=1).mean()
-    # and, very little, that they lie about 0
-    wanted = float(apart) + 1e-6 * float(positions.square().sum())
-    assert float(positions @ form @ positions) == pytest.approx(wanted)
 
 
 @pytest.mark.parametrize(("turn", "said"), [(0.4, "too few"), (0.1, "foretells")])
