@@ -58,7 +58,7 @@ def place(written: Path, tmp_path: Path) -> Path:
     ("name", "kind", "version", "parts"),
     [
         ("walk.zarr", "recording", 4, {"views": "300 of 300", "times": "300", "odours": "300×2"}),
-        ("map", "map", 7, {"settings": "11", "learnt": "4"}),
+        ("map", "map", 8, {"settings": "11", "learnt": "4"}),
         ("result", "result", None, {"files": "5 of 5"}),
         ("sweep", "sweep", 2, {"points": "2 of 2"}),
         ("room.toml", "room", None, {"name": "pillar", "walls": "4"}),
