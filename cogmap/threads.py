@@ -59,9 +59,10 @@ def in_order(
     as long to start as a view takes to be perceived; and so are those of a thread that is one of many.
     `workers` is how many threads, as many as cores when None.
     """
-    workers, items = workers or cpu_count(), iter(items)
+    items = iter(items)
     begun = list(islice(items, 2))
-    if len(begun) < 2 or workers == 1 or getattr(_HERE, "one_of_many", False):
+    # cores are counted last: that takes longer than to perceive some views
+    if len(begun) < 2 or getattr(_HERE, "one_of_many", False) or (workers := workers or cpu_count()) == 1:
         yield from map(work, chain(begun, items))
         return
     with ThreadPoolExecutor(workers, initializer=_begin) as pool:
