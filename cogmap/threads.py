@@ -61,8 +61,10 @@ def in_order(
     """
     items = iter(items)
     begun = list(islice(items, 2))
-    # cores are counted last: that takes longer than to perceive some views
-    if len(begun) < 2 or getattr(_HERE, "one_of_many", False) or (workers := workers or cpu_count()) == 1:
+    alone = len(begun) < 2 or getattr(_HERE, "one_of_many", False)
+    # cores are counted where it matters: that takes as long as some layers take for a view
+    workers = 1 if alone else workers or cpu_count()
+    if workers == 1:
         yield from map(work, chain(begun, items))
         return
     with ThreadPoolExecutor(workers, initializer=_begin) as pool:

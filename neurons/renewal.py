@@ -1,5 +1,7 @@
 """Renewal: what a room has taught is forgotten slowly, and learnt from it as it is by now."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from math import exp
 
@@ -65,7 +67,8 @@ class RenewalStage(StripStage):
         CorrectedMetricMapStage().learn(circuit, told)
         AfferentStage().learn(circuit, told)
         few = ChartStage().winners[1]
-        circuit.charts.partial_fit(codes, batch.log_odours, winners=few, window=self.time_constant)
+        with _taking_sums_along(circuit):
+            circuit.charts.partial_fit(codes, batch.log_odours, winners=few, window=self.time_constant)
         clock = circuit.get_buffer("renewed.views")
         before = self._agreements(int(clock))
         clock += count
@@ -77,7 +80,8 @@ class RenewalStage(StripStage):
 
     @staticmethod
     def _agree(circuit: Circuit, *, anew: bool) -> None:
-        circuit.charts.freeze()
+        with _taking_sums_along(circuit):
+            circuit.charts.freeze()
         OlfactionStage().orient(circuit, known=circuit.readout.phases)
         if anew:
             CorrectedMetricMapStage().finish(circuit)
@@ -85,3 +89,11 @@ class RenewalStage(StripStage):
             circuit.get_buffer("renewed.views").zero_()
         else:
             circuit.metric_map.check()
+
+
+@contextmanager
+def _taking_sums_along(circuit: Circuit) -> Iterator[None]:
+    """Keep what charts know of smell while their frames change."""
+    before = circuit.charts.frames
+    yield
+    circuit.olfaction.carry(circuit.charts.since(before))

@@ -27,6 +27,13 @@ class NearestCharts(NamedTuple):
     squared_distance: Float[Tensor, "views winners"]
 
 
+class Frames(NamedTuple):
+    """Frames of chart coordinates: origins and axes."""
+
+    centres: Float[Tensor, "charts components"]
+    tangents: Float[Tensor, "charts d components"]
+
+
 class Charts(nn.Module):
     """Competitive local PCA: K centres C_k tile the codes, each with tangents U_k along the manifold.
 
@@ -142,6 +149,23 @@ class Charts(nn.Module):
     ) -> Float[Tensor, "views winners components"]:
         """Differences z − C_k of each code from the charts it excites."""
         return codes[:, None] - rows_of(self.centres, chart)
+
+    @property
+    def frames(self) -> Frames:
+        """The frames of chart coordinates as they are now: a copy."""
+        return Frames(self.centres.clone(), self.tangents.clone())
+
+    def since(self, before: Frames) -> Float[Tensor, "charts f f"]:
+        """Give what takes [1, u] of a view in a tangent plane from earlier frames to those of now."""
+        flat = before.tangents.double()
+        tangents = self.tangents.double()
+        # rows part from right angles while they learn
+        turn = torch.linalg.solve(flat @ flat.mT, flat @ tangents.mT).mT
+        shift = torch.einsum("kdc,kc->kd", tangents, (before.centres - self.centres).double())
+        change = torch.eye(1 + self.dimensions, dtype=torch.double, device=flat.device)
+        change = change.repeat(len(self), 1, 1)
+        change[:, 1:, 0], change[:, 1:, 1:] = shift, turn
+        return change
 
     def partial_fit(
         self,

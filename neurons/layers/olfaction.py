@@ -44,6 +44,11 @@ class Olfaction(nn.Module):
         self.gram.index_add_(0, chart.flatten(), gram.double())
         self.cross.index_add_(0, chart.flatten(), cross.double())
 
+    def carry(self, change: Float[Tensor, "charts f f"]) -> None:
+        """Take the sums along with charts that have moved: f becomes `change` f (`Charts.since`)."""
+        self.gram.copy_(change @ self.gram @ change.mT)
+        self.cross.copy_(change @ self.cross)
+
     def solve(self) -> tuple[Float[Tensor, "charts odorants"], Float[Tensor, "charts d odorants"]]:
         """Give intercepts (log concentration at the centre) and Jacobians (per unit of chart coordinate)."""
         # of the chart's own sums: a prior that weighs alike after any number of views

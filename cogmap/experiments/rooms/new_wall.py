@@ -17,6 +17,7 @@ from cogmap import cells
 from cogmap.errors import CogmapError
 from cogmap.evaluation.populations import perceive
 from cogmap.evaluation.scoring import score
+from cogmap.evaluation.verdicts import MOST, figure_verdict
 from cogmap.experiments import Conditions, Result, Trial, experiment
 from cogmap.experiments.acting.dreamer import Dreamer
 from cogmap.experiments.rooms.many_rooms import Visit
@@ -32,7 +33,7 @@ ROUNDS = 12
 STRETCHES = 4
 """of which so many are as long as the walk that was learnt from."""
 RIGHT = 1.2
-"""By how much errors may be larger than before, in a map that is right again."""
+"""By how much errors may be larger than in a map of the changed room alone, in one that is right again."""
 SEEN = 500
 """Views in which surprise is looked for."""
 VISIBLE = 8
@@ -48,9 +49,11 @@ def new_wall(conditions: Conditions) -> Result:
     have two or more on the first walk beside the wall, before anything is learnt there; `split_cells_later`
     that after all is. `surprise_auc` is over the pixels of 500 views that are rendered with and without the
     wall: which differ by more than 8 grey levels. `views_to_right` is after how many views beside the wall
-    both errors are at most 1.2 times what they were before, on another walk there; null if never.
-    `trusted_and_wrong` is the share of the times when it was asked at which it was not, and yet was trusted
-    and took most views for those of its room. `kept_*` are those of the map that learns nothing.
+    both errors, on another walk there, are at most 1.2 times `alone_*`, those of a map that has learnt the
+    room with the wall alone, from as many views as this one without it; null if never. `trusted_and_wrong` is
+    the share of the times when it was asked at which it was trusted, took most views for those of its room,
+    and an error was beyond what `cogmap.evaluation.verdicts` allows. `before_*` are errors before there was a
+    wall, `kept_*` those of the map that learns nothing.
 
     References
     ----------
@@ -81,10 +84,13 @@ def new_wall(conditions: Conditions) -> Result:
         rows.append({"views": rows_of.stop, **_told(living, other, conditions.views)})
     table = pd.DataFrame(rows)
     plain = _told(_unrefined(trial.cmap), trial, conditions.views)
+    alone = Trial.of(replace(beside, views=conditions.views))
+    aim = _told(alone.cmap, alone, conditions.views)
     names = ("heading_median_deg", "position_median_m")
     for name in names:
-        table[f"{name.partition('_')[0]}_over_before"] = table[name] / plain[name]
-    right = (table[["heading_over_before", "position_over_before"]] <= RIGHT).all(axis=1)
+        table[f"{name.partition('_')[0]}_over_alone"] = table[name] / aim[name]
+    right = (table[["heading_over_alone", "position_over_alone"]] <= RIGHT).all(axis=1)
+    wrong = np.array([_wrong(row) for row in rows])
     after = Visit.of(living, trial, other.fresh)
     return Result(
         metrics={
@@ -92,9 +98,10 @@ def new_wall(conditions: Conditions) -> Result:
             "split_cells": _split(before, kept),
             "split_cells_later": _split(before, after),
             "surprise_auc": _surprise_auc(dreamer, walled, other),
-            "trusted_and_wrong": float((table["trusted"] & (table["recognised"] > 0.5) & ~right).mean()),
+            "trusted_and_wrong": float(((table["recognised"] > 0.5) & wrong).mean()),
             "views_to_right": int(table["views"][right].min()) if right.any() else None,
             **{f"before_{name}": plain[name] for name in names},
+            **{f"alone_{name}": aim[name] for name in names},
             **{f"kept_{name}": float(table[name].iloc[0]) for name in names},
             **{name: float(table[name].iloc[-1]) for name in names},
         },
@@ -139,6 +146,11 @@ def _told(cmap: CognitiveMap, there: Trial, count: int) -> dict[str, Any]:
         "recognised": float(np.mean(test.room == 0)),
         **{name: figures.get(name, float("nan")) for name in names},
     }
+
+
+def _wrong(told: dict[str, Any]) -> bool:
+    """Whether a map was trusted in an answer that was wrong."""
+    return any(figure_verdict(answer, told, trusted=told["trusted"]) == "WRONG" for answer in MOST)
 
 
 def _split(before: Visit, after: Visit) -> float:

@@ -38,8 +38,8 @@ def plot_new_wall(
     before, kept, after
         Maps of the same cells before the wall, on the first walk beside it, and when the map has lived on.
     rounds
-        `views`, and the median errors as parts of those before the wall, `heading_over_before` and
-        `position_over_before`, a row a stretch of the walk.
+        `views`, and the median errors over those of a map of the changed room alone, `heading_over_alone` and
+        `position_over_alone`, a row a stretch of the walk.
 
     Raises
     ------
@@ -70,10 +70,12 @@ def plot_new_wall(
         line[0].set_ylabel(label, fontsize=SMALL, color=INK)
         colour_bar(line[-1], drawn, "Hz")
     axes = below.subplots()
-    tidy(axes, x="views beside the wall", y="median error, over that before", size=SMALL)
+    tidy(
+        axes, x="views beside the wall", y="median error, over that\nof a map of this room alone", size=SMALL
+    )
     for column, colour, label in (
-        ("heading_over_before", GOOD, "heading"),
-        ("position_over_before", BAD, "position"),
+        ("heading_over_alone", GOOD, "heading"),
+        ("position_over_alone", BAD, "position"),
     ):
         axes.plot(rounds["views"], rounds[column], "o-", color=colour, label=label, markersize=4)
     axes.axhline(1.2, color=INK, linewidth=0.8, linestyle="--")

@@ -234,6 +234,23 @@ def test_coordinates_are_tangents_times_residual(charts: Charts, views: Tensor) 
             np.testing.assert_allclose(coordinates[view, rank], direct, atol=1e-5)
 
 
+def test_coordinates_in_earlier_frames_become_those_of_now(views: Tensor) -> None:
+    layer = blank(40)
+    layer.partial_fit(views[:300], smells(views[:300]), winners=2, window=300.0)
+    before, chart = layer.frames, torch.arange(40)[:, None]
+    # in the tangent planes of before, where frames that learn are not at right angles yet
+    seen = before.centres + torch.einsum(
+        "kd,kdc->kc", torch.linspace(-1, 1, 120).view(40, 3), before.tangents
+    )
+    old = torch.cat([torch.ones(40, 1), layer.coordinates(seen, chart)[:, 0]], dim=1)
+    layer.partial_fit(views[300:600], smells(views[300:600]), winners=2, window=300.0)
+    layer.freeze()
+    now = torch.cat([torch.ones(40, 1), layer.coordinates(seen, chart)[:, 0]], dim=1)
+    assert (now - old).abs().max() > 0.1
+    told = torch.einsum("kij,kj->ki", layer.since(before).float(), old)
+    torch.testing.assert_close(told, now, rtol=1e-3, atol=1e-4)
+
+
 def test_grows_halfway_along_the_longest_overlaps() -> None:
     charts = blank(4, 5)
     charts.smells = torch.tensor([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [2.0, 3.0]])

@@ -74,6 +74,19 @@ def test_a_view_tells_every_chart_it_excites(batch: Batch) -> None:
     torch.testing.assert_close(wide.cross, apart.cross)
 
 
+def test_sums_that_are_taken_along_are_those_of_views_in_other_coordinates(batch: Batch) -> None:
+    chart, weight, coordinates, odour = batch
+    change = torch.eye(4, dtype=torch.double).repeat(CHARTS, 1, 1)
+    change += 0.2 * torch.randn(CHARTS, 4, 4, generator=torch.Generator().manual_seed(3))
+    change[:, 0] = torch.tensor([1.0, 0.0, 0.0, 0.0])  # what is 1 stays 1
+    f = torch.cat([torch.ones(VIEWS, 1, 1), coordinates], dim=2)
+    other = torch.einsum("nij,nwj->nwi", change[chart[:, 0]].float(), f)[:, :, 1:]
+    layer, moved = smelt(batch), smelt((chart, weight, other, odour))
+    layer.carry(change)
+    torch.testing.assert_close(layer.gram, moved.gram, rtol=1e-4, atol=1e-4)
+    torch.testing.assert_close(layer.cross, moved.cross, rtol=1e-4, atol=1e-4)
+
+
 def test_halves_add_up(batch: Batch) -> None:
     whole = smelt(batch)
     first, second = (smelt(half) for half in zip(*(part.split(VIEWS // 2) for part in batch), strict=True))

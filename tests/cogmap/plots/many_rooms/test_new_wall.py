@@ -17,7 +17,7 @@ def maps(seed: int) -> RateMaps:
 
 def test_cells_that_change_most_beside_the_wall_and_the_course_of_errors() -> None:
     rounds = pd.DataFrame(
-        {"views": [0, 100], "heading_over_before": [3.0, 1.1], "position_over_before": [2.0, 1.0]}
+        {"views": [0, 100], "heading_over_alone": [3.0, 1.1], "position_over_alone": [2.0, 1.0]}
     )
     room = with_a_wall(Arena.load("open_field"))
     figure = plot_new_wall(room, maps(0), maps(1), maps(2), rounds)
