@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from tests import type_checks
 from tests.guards import described, too_near
 
 LONGEST = (
@@ -32,6 +33,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return min((ranks[name] for name in LONGEST if item.path.match(f"{name}.py")), default=len(ranks))
 
     items.sort(key=rank)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup() -> None:
+    """Check types of the first calls in each test."""
+    type_checks.begin()
 
 
 @pytest.fixture(scope="session", autouse=True)
