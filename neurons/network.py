@@ -135,19 +135,24 @@ class Network(Circuit):
 
     def heading_diagnosis(self) -> str:
         """Say why headings cannot be trusted, or nothing when they can."""
-        return self.unfinished or self.noseless or self.guard.heading(self.told)
+        return self.unready or self.guard.heading(self.told)
 
     def place_diagnosis(self) -> str:
         """Say why places cannot be trusted, or nothing when they can."""
-        return self.unfinished or self.noseless or self.guard.place(self.told)
+        return self.unready or self.guard.place(self.told)
 
     def metric_diagnosis(self) -> str:
         """Say why there is no metric map, or nothing when there is one."""
-        return self.unfinished or self.noseless or self.metric_map.diagnosis()
+        return self.unready or self.metric_map.diagnosis()
 
     def position_diagnosis(self) -> str:
         """Say why positions on the metric map cannot be trusted, or nothing when they can."""
         return self.metric_diagnosis() or self.guard.poses(self.told)
+
+    @property
+    def unready(self) -> str:
+        """Why nothing that stands on its charts is to be trusted; empty when it may be."""
+        return self.unfinished or self.noseless or self.stage.diagnosis(self)
 
     @property
     def unfinished(self) -> str:

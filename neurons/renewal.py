@@ -21,11 +21,12 @@ from neurons.stages import (
 
 
 class Clock(nn.Module):
-    """Counts views since places were last laid out."""
+    """Counts views since places were last laid out, and remembers whether the room has changed since."""
 
     def __init__(self) -> None:
         super().__init__()
         self.views: Tensor = nn.Buffer(torch.zeros((), dtype=torch.int64))
+        self.changed: Tensor = nn.Buffer(torch.zeros((), dtype=torch.bool))
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,8 @@ class RenewalStage(StripStage):
     Sums of olfaction and afferents decay to 1/e in `time_constant` views, while charts move to what they
     win. Some times in as many views the charts agree anew, on a compass that is turned to the one before, and
     the walk since tells whether places still lie where they were; once in as many they are laid out anew from
-    it. In between all is told as it was.
+    it. In between all is told as it was. While most of what is seen is new, and until walking has confirmed
+    what is known by then, nothing is trusted.
 
     Parameters
     ----------
@@ -75,6 +77,20 @@ class RenewalStage(StripStage):
         if self._agreements(int(clock)) > before:
             self._agree(circuit, anew=int(clock) >= self.time_constant)
 
+    def doubt(self, circuit: Circuit) -> None:
+        """Trust nothing until walking has confirmed it anew: what it has confirmed was of another look."""
+        circuit.get_buffer("renewed.changed").fill_(value=True)
+        circuit.metric_map.begin_again()
+
+    def diagnosis(self, circuit: Circuit) -> str:
+        """Say that the room has changed, until walking has confirmed what is known of it."""
+        if not circuit.get_buffer("renewed.changed"):
+            return ""
+        return (
+            "most of what it saw was new: the room has changed, and walking has not confirmed yet what it "
+            "knows by now; show it more of the walk, in order"
+        )
+
     def _agreements(self, views: int) -> int:
         return int(views * self.agreements / self.time_constant)
 
@@ -83,6 +99,8 @@ class RenewalStage(StripStage):
         with _taking_sums_along(circuit):
             circuit.charts.freeze()
         OlfactionStage().orient(circuit, known=circuit.readout.phases)
+        if circuit.metric_map.enough:
+            circuit.get_buffer("renewed.changed").zero_()
         if anew:
             CorrectedMetricMapStage().finish(circuit)
             circuit.metric_map.begin_again()

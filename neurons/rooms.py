@@ -319,6 +319,7 @@ class Rooms(nn.Module):
             return nearest
         present = int(self.present)
         if not jump and self[present].stage.follows:
+            self[present].stage.doubt(self[present])
             return present
         growing = self.growing
         if growing is None:

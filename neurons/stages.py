@@ -100,6 +100,13 @@ class Stage(ABC, Generic[Seen]):
         """Fix what was learnt; give the name of an earlier stage to go back to it."""
         return None
 
+    def doubt(self, circuit: Circuit) -> None:
+        """Take note that most of what is seen is new, in a stage that follows the room."""
+
+    def diagnosis(self, circuit: Circuit) -> str:  # noqa: ARG002
+        """Say why what was learnt is not to be trusted at present, or nothing when it is."""
+        return ""
+
 
 @dataclass(frozen=True)
 class StripStage(Stage[Tensor]):

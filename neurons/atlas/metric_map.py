@@ -174,10 +174,9 @@ class MetricMap(nn.Module):
 
     def solve(self, place: PlaceCells) -> None:
         """Learn positions and the errors of the compass, if either half of the walk foretells the other."""
-        # fewer displacements than cells leave offsets that nothing determines
-        halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
-        if min(half.pairs for half in halves) < len(self.offsets):
+        if not self.enough:
             return
+        halves = self._halves
         near = self.ridge * apart(place)
         learnt = partial(_Evidence.solve, prior=near, steadiness=self.steadiness)
         foretold = _foretold(halves, learnt)
@@ -199,9 +198,9 @@ class MetricMap(nn.Module):
 
     def check(self) -> None:
         """Learn from the sums whether displacements are still those of the map as it is."""
-        halves = [self._evidence(slice(number, number + 1)) for number in (0, 1)]
-        if self.positions.isnan().any() or min(half.pairs for half in halves) < len(self.offsets):
+        if self.positions.isnan().any() or not self.enough:
             return
+        halves = self._halves
         positions = torch.view_as_complex(self.positions[:, 0].double().contiguous())
         turns = torch.ones_like(halves[0].ahead[:, 0])  # headings have been corrected already
         found = [half.cross_validated_r2(positions, turns) for half in halves]
@@ -222,6 +221,11 @@ class MetricMap(nn.Module):
                 "show it longer walks, in order"
             )
         return ""
+
+    @property
+    def enough(self) -> bool:
+        """Whether each half of the walk tells enough: fewer ways than cells leave offsets undetermined."""
+        return bool(self.counted[:, 1].min() >= len(self.offsets))
 
     def begin_again(self) -> None:
         """Forget the sums: what follows is learnt on headings that are corrected by what is known by now."""
@@ -246,6 +250,10 @@ class MetricMap(nn.Module):
         turned = (heading[1:] * heading[:-1].conj()).angle().abs().unfold(0, self.lag, 1)
         steps = ((heading[1:] + heading[:-1]) / 2).unfold(0, self.lag, 1)
         return (turned < self.straight).all(dim=1), steps.mean(dim=1)
+
+    @property
+    def _halves(self) -> list["_Evidence"]:
+        return [self._evidence(slice(number, number + 1)) for number in (0, 1)]
 
     def _evidence(self, halves: slice) -> "_Evidence":
         power, pairs = self.counted[halves].sum(dim=0).tolist()

@@ -92,6 +92,25 @@ def test_what_is_new_on_a_walk_is_of_the_room_and_after_a_jump_of_another(networ
         rooms.learn(*walk(0, BATCH, 95))
         for day in range(8):  # until nearly all that it has just seen is strange
             rooms.learn(*walk(1, BATCH, day), jump=jump and not day)
+        assert bool(rooms[0].stage.diagnosis(rooms[0])) is not jump
         assert len(rooms) == known
         assert int(rooms.present) == known - 1
         assert float(rooms.strangeness) > rooms.majority
+
+
+@pytest.mark.near_guard  # what the guard says of it is not asked
+def test_a_room_that_has_changed_is_doubted_until_walking_confirms_what_is_known(
+    network: Network, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    living = deepcopy(network)
+    live(living, 1, 0.0)
+    living.stage.doubt(living)
+    assert int(living.metric_map.seen) == 0  # what was walked before confirms nothing
+    for told in (living.heading_diagnosis, living.place_diagnosis, living.metric_diagnosis):
+        assert "the room has changed" in told()
+    for enough in (False, True):
+        monkeypatch.setattr(MetricMap, "enough", property(lambda _, enough=enough: enough))
+        monkeypatch.setattr(MetricMap, "check", lambda _: None)
+        monkeypatch.setattr(MetricMap, "solve", lambda *_: None)
+        live(living, 1, 0.0)
+        assert (not living.stage.diagnosis(living)) is enough
