@@ -28,7 +28,7 @@ WALL = {"size": (0.1, 1.2), "height": 1.0, "material": "white"}
 """Stood across the middle of the platform, m."""
 WALL_SEED = 3000
 """Added to the seed for walks beside the wall."""
-ROUNDS = 12
+ROUNDS = 16
 """Stretches of a walk after each of which the map is asked again,"""
 STRETCHES = 4
 """of which so many are as long as the walk that was learnt from."""
