@@ -18,6 +18,8 @@ from cogmap.navigation.weighing import Weighing, choose_weighing, likeness_weigh
 
 RIDGE = 1e-4
 """Of the affine weights."""
+EQUAL = 1e-6
+"""Distance of the codes of equal views, which rounding makes, in standard deviations of all."""
 
 
 class TurnedLocation(NamedTuple):
@@ -97,7 +99,7 @@ class PanoramaLocaliser:
         weights = weighing.weigh(near, code.places_, code.places_, RIDGE)
         nearest = np.column_stack([np.arange(len(near.indices)), near.indices[:, 0]])
         # where a robot stood still, views may be equal
-        different = near.distances[:, 0] > 0
+        different = near.distances[:, 0] > EQUAL
         usual = _Usual(
             float(np.median(_missed(code, near, weights, code.places_)[different])),
             float(np.median(code.compare_known(nearest[different]).misfit)),
