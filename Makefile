@@ -10,6 +10,8 @@ demo: .venv/installed
 
 # Many processes import the same: the first to do so leaves them its bytecode, whatever the environment says.
 test: export PYTHONDONTWRITEBYTECODE =
+# A worker a core: threads of one would wait for those of the others.
+test: export OMP_NUM_THREADS = 1
 test: .venv/installed
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile --no-loadscope-reorder
 
