@@ -2,12 +2,14 @@ from copy import deepcopy
 
 import pytest
 import torch
+from torch import Tensor
 
 from neurons.atlas.metric_map import MetricMap
+from neurons.layers.charts import Charts
 from neurons.network import Network
 from neurons.renewal import RenewalStage
 from neurons.rooms import Rooms
-from neurons.stages import STAGES
+from neurons.stages import STAGES, OlfactionStage
 from tests.neurons.test_rooms import BATCH, EPOCH, FEATURES, ODORANTS, begin, walk
 
 SIZES = {"charts": 120, "most_charts": 120, "components": 6, "place_cells": 10, "heading_cells": 6}
@@ -66,6 +68,29 @@ def test_the_compass_stays_where_it_was(network: Network) -> None:
     live(living, 3, 0.0)
     turned = living.recall(strips).heading - network.recall(strips).heading
     assert torch.atan2(turned.sin(), turned.cos()).abs().median() < 0.2
+
+
+@pytest.mark.near_guard  # it is asked of frames, and nothing is trusted
+def test_what_charts_know_of_smell_stays_while_their_axes_turn(
+    network: Network, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    living = deepcopy(network)
+    charts = torch.arange(len(living.charts))[:, None]
+    seen = living.charts.centres + 0.1 * living.charts.tangents.sum(dim=1)
+
+    def told() -> Tensor:
+        intercepts, jacobians = living.olfaction.solve()
+        coordinates = living.charts.coordinates(seen, charts)[:, 0]
+        return intercepts + torch.einsum("kd,kdo->ko", coordinates, jacobians)
+
+    before = told()
+    monkeypatch.setattr(OlfactionStage, "learn", lambda *_: None)
+    for name in ("partial_fit", "freeze"):  # either turns axes round
+        monkeypatch.setattr(Charts, name, lambda self, *_, **__: self.tangents.neg_())
+    for _ in range(2):  # the second batch comes with an agreement
+        living.learn(*walk(0, BATCH, 94))
+        torch.testing.assert_close(told(), before, rtol=1e-3, atol=1e-3)
+        living.get_buffer("renewed.views").fill_(EPOCH // RenewalStage.agreements - 1)
 
 
 def test_charts_agree_anew_four_times_as_often_as_places_are_laid_out(
