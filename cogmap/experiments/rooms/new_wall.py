@@ -150,7 +150,8 @@ def _told(cmap: CognitiveMap, there: Trial, count: int) -> dict[str, Any]:
 
 def _wrong(told: dict[str, Any]) -> bool:
     """Whether a map was trusted in an answer that was wrong."""
-    return any(figure_verdict(answer, told, trusted=told["trusted"]) == "WRONG" for answer in MOST)
+    figures = {key: told[key] for key, _ in MOST.values()}
+    return any(figure_verdict(answer, figures, trusted=told["trusted"]) == "WRONG" for answer in MOST)
 
 
 def _split(before: Visit, after: Visit) -> float:
