@@ -21,7 +21,7 @@ from neurons.stages import (
 
 
 class Clock(nn.Module):
-    """Counts views since places were last laid out, and remembers whether the room has changed since."""
+    """Counts views since places were last laid out, and remembers whether the room has ever changed."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -81,10 +81,12 @@ class RenewalStage(StripStage):
         """Trust nothing until walking has confirmed it anew: what it has confirmed was of another look."""
         circuit.get_buffer("renewed.changed").fill_(value=True)
         circuit.metric_map.begin_again()
+        circuit.metric_map.cross_validated_r2.fill_(torch.nan)
 
     def diagnosis(self, circuit: Circuit) -> str:
         """Say that the room has changed, until walking has confirmed what is known of it."""
-        if not circuit.get_buffer("renewed.changed"):
+        confirmed = bool(circuit.metric_map.cross_validated_r2.isfinite().all())
+        if confirmed or not circuit.get_buffer("renewed.changed"):
             return ""
         return (
             "most of what it saw was new: the room has changed, and walking has not confirmed yet what it "
@@ -99,8 +101,6 @@ class RenewalStage(StripStage):
         with _taking_sums_along(circuit):
             circuit.charts.freeze()
         OlfactionStage().orient(circuit, known=circuit.readout.phases)
-        if circuit.metric_map.enough:
-            circuit.get_buffer("renewed.changed").zero_()
         if anew:
             CorrectedMetricMapStage().finish(circuit)
             circuit.metric_map.begin_again()

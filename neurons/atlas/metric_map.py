@@ -174,7 +174,7 @@ class MetricMap(nn.Module):
 
     def solve(self, place: PlaceCells) -> None:
         """Learn positions and the errors of the compass, if either half of the walk foretells the other."""
-        if not self.enough:
+        if not self._enough:
             return
         halves = self._halves
         near = self.ridge * apart(place)
@@ -198,7 +198,7 @@ class MetricMap(nn.Module):
 
     def check(self) -> None:
         """Learn from the sums whether displacements are still those of the map as it is."""
-        if self.positions.isnan().any() or not self.enough:
+        if self.positions.isnan().any() or not self._enough:
             return
         halves = self._halves
         positions = torch.view_as_complex(self.positions[:, 0].double().contiguous())
@@ -221,11 +221,6 @@ class MetricMap(nn.Module):
                 "show it longer walks, in order"
             )
         return ""
-
-    @property
-    def enough(self) -> bool:
-        """Whether each half of the walk tells enough: fewer ways than cells leave offsets undetermined."""
-        return bool(self.counted[:, 1].min() >= len(self.offsets))
 
     def begin_again(self) -> None:
         """Forget the sums: what follows is learnt on headings that are corrected by what is known by now."""
@@ -250,6 +245,11 @@ class MetricMap(nn.Module):
         turned = (heading[1:] * heading[:-1].conj()).angle().abs().unfold(0, self.lag, 1)
         steps = ((heading[1:] + heading[:-1]) / 2).unfold(0, self.lag, 1)
         return (turned < self.straight).all(dim=1), steps.mean(dim=1)
+
+    @property
+    def _enough(self) -> bool:
+        """Whether each half of the walk tells enough: fewer ways than cells leave offsets undetermined."""
+        return bool(self.counted[:, 1].min() >= len(self.offsets))
 
     @property
     def _halves(self) -> list["_Evidence"]:

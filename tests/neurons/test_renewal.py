@@ -129,13 +129,14 @@ def test_a_room_that_has_changed_is_doubted_until_walking_confirms_what_is_known
 ) -> None:
     living = deepcopy(network)
     live(living, 1, 0.0)
+    living.metric_map.cross_validated_r2.fill_(0.9)
     living.stage.doubt(living)
     assert int(living.metric_map.seen) == 0  # what was walked before confirms nothing
     for told in (living.heading_diagnosis, living.place_diagnosis, living.metric_diagnosis):
         assert "the room has changed" in told()
-    for enough in (False, True):
-        monkeypatch.setattr(MetricMap, "enough", property(lambda _, enough=enough: enough))
-        monkeypatch.setattr(MetricMap, "check", lambda _: None)
+    for told_by_walking in (torch.nan, 0.9):
+        confirmed = torch.full((2,), told_by_walking)
+        monkeypatch.setattr(MetricMap, "check", lambda self, r2=confirmed: self.cross_validated_r2.copy_(r2))
         monkeypatch.setattr(MetricMap, "solve", lambda *_: None)
         live(living, 1, 0.0)
-        assert (not living.stage.diagnosis(living)) is enough
+        assert (not living.stage.diagnosis(living)) is bool(confirmed.isfinite().all())

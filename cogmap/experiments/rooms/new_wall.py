@@ -84,7 +84,7 @@ def new_wall(conditions: Conditions) -> Result:
         rows.append({"views": rows_of.stop, **_told(living, other, conditions.views)})
     table = pd.DataFrame(rows)
     plain = _told(_unrefined(trial.cmap), trial, conditions.views)
-    alone = Trial.of(replace(beside, views=conditions.views))
+    alone = replace(other, walk=other.walk[: conditions.views])
     aim = _told(alone.cmap, alone, conditions.views)
     names = ("heading_median_deg", "position_median_m")
     for name in names:
